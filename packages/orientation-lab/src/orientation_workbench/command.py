@@ -168,16 +168,13 @@ def _given(argument):
 
 def _declared(words):
     """Return the conventions that the words name; each word names one."""
-    groups = (
-        {
-            choice["value"]: group["group"]
-            for groups in KINDS.values()
-            for group in groups
-            for choice in group["choices"]
-        }
-        | dict.fromkeys(WAYS, "way")
-        | dict.fromkeys(COUNTS, "kind")
-    )
+    groups = {
+        choice["value"]: group["group"]
+        for groups in KINDS.values()
+        for group in groups
+        for choice in group["choices"]
+    }
+    groups |= dict.fromkeys(WAYS, "way") | dict.fromkeys(COUNTS, "kind")
     for word in words:
         if word not in groups:
             raise ValueError(

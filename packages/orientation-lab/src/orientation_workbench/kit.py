@@ -120,9 +120,10 @@ def convention_of(
             f"{np.round(asked[0], 4).tolist()} it made {np.round(result[0], 4).tolist()}"
         )
     best = found.chains[0]
+    relation = best.relation
     return Convention(
-        best.first["choices"], best.second["choices"], best.relation["inverse"],
-        best.relation["body"], best.relation["world"], found.faults,
+        best.first["choices"], best.second["choices"], relation["inverse"], relation["body"],
+        relation["world"], found.faults,
     )  # fmt: skip
 
 

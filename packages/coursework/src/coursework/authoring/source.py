@@ -290,9 +290,8 @@ def read_source(
                 ) from error
             if "figure" in cell.metadata.get("tags", []):
                 figures[number] = value
-    if unasked := sorted(
-        (set(answers) if not variant and only is None else set()) - set(questions)
-    ):
+    unasked = sorted((set(answers) if not variant and only is None else set()) - set(questions))
+    if unasked:
         raise author.AuthorError(f"{path.name}: checks without a question: {', '.join(unasked)}.")
     variables = checked_names(notebook)
     names = list(variables.values())

@@ -78,7 +78,8 @@ def outdated() -> list[str]:
 def watch() -> None:
     """Follow the cells of the kernel in which this runs, if there is one."""
     # Without a kernel there may be no IPython, or only a replacement.
-    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    get_shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)
+    shell = get_shell()
     if events := getattr(shell, "events", None):
         events.register("pre_run_cell", begins)
         events.register("post_run_cell", ends)

@@ -329,10 +329,9 @@ def demand_own_numbers(
     )
     raise NothingToGrade(
         f"Of {number_of(saying, 'notebook')} with an ID, {len(wrong)} carry another student's: for "
-        f"example, "
-        f"{notebook.says!r} would be graded as {one.student!r}. A student's numbers depend on the "
-        f"ID, so we would judge their answers by the wrong numbers. {why} If the list is right "
-        "anyway, add --as-listed."
+        f"example, {notebook.says!r} would be graded as {one.student!r}. A student's numbers "
+        f"depend on the ID, so we would judge their answers by the wrong numbers. {why} If the "
+        "list is right anyway, add --as-listed."
     )
 
 

@@ -937,7 +937,7 @@ class _Bench:
         for place, verdict in enumerate(self.verdicts):
             if verdict.about in OF_THE_FIELD and verdict.light in lights:
                 words = f"{verdict.words}, which the {cause} may have caused"
-                advice = f"Judge it again without the {cause}."
+                advice = "Examine it again once that is corrected."
                 self.verdicts[place] = Verdict(verdict.about, UNKNOWN, words, {}, advice)
                 self.facts.pop(verdict.about, None)
 

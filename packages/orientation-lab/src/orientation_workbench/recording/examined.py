@@ -109,22 +109,15 @@ def as_text(examined: Examined) -> str:
             f"  -> {verdict.advice}" if verdict.advice else "",
         )
     ]
-    return "\n".join(
-        [
-            examined.name,
-            *(
-                line
-                for row in rows
-                for line in wrap(row, WIDTH, subsequent_indent=" " * 5, break_long_words=False)
-            ),
-        ]
-    )
+    lines = [
+        line
+        for row in rows
+        for line in wrap(row, WIDTH, subsequent_indent=" " * 5, break_long_words=False)
+    ]
+    return "\n".join([examined.name, *lines])
 
 
 def as_data(examined: Examined) -> dict[str, object]:
     """The report as plain data: what ``--json`` prints, in format 1."""
-    return {
-        "format": 1,
-        "recording": examined.name,
-        "verdicts": [verdict._asdict() for verdict in examined.verdicts],
-    }
+    verdicts = [verdict._asdict() for verdict in examined.verdicts]
+    return {"format": 1, "recording": examined.name, "verdicts": verdicts}

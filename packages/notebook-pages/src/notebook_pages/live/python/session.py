@@ -307,9 +307,8 @@ class Shell:
                 outcome = self.explain(error, name)
                 # IPython stores it there, and packages look there for it.
                 sys.last_value = error
-            self.events.trigger(
-                "post_run_cell", types.SimpleNamespace(success=outcome["status"] == "ok")
-            )
+            succeeded = types.SimpleNamespace(success=outcome["status"] == "ok")
+            self.events.trigger("post_run_cell", succeeded)
         return json.dumps(outcome)
 
     @contextlib.contextmanager

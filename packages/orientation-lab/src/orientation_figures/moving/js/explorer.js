@@ -26,7 +26,7 @@ export function render({ model, el }) {
     fixed.show(model.get('fixed'));
     model.get('angles').forEach((angle, k) => {
       const { field } = fields[k];
-      if (!field.matches(':focus') && field.value !== angle) field.value = angle;
+      if (document.activeElement !== field && field.value !== angle) field.value = angle;
     });
     result.innerHTML = model.get('result');
     text.say(model.get('message'));

@@ -337,7 +337,7 @@ export function numberField({ name, step = 0.1, min = -Infinity, max = Infinity,
     blur: () => { field.value = field.dataset.value; } });
   return { element: field, show(value) {
     field.dataset.value = plain(value, digits);
-    if (!field.matches(':focus') && field.value !== field.dataset.value) field.value = field.dataset.value;
+    if (document.activeElement !== field && field.value !== field.dataset.value) field.value = field.dataset.value;
   } };
 }
 
