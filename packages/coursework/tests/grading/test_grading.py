@@ -741,7 +741,7 @@ class Stub:
             "from": "check",
             "cell": 0,
         }
-        isolation = {"layers": [], "weak": False, "namespaces made by": None, "not stopped": []}
+        isolation = {"layers": [], "weak": False, "not stopped": []}
         return {**given_up(job, ""), "finished": True, "notes": [], "isolation": isolation,
                 "answers": dict.fromkeys(job["questions"], blank)}  # fmt: skip
 

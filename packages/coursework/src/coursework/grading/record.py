@@ -198,8 +198,6 @@ class Isolation(AsJson):
     layers : tuple of str
         Those in force.
     weak : bool
-    namespaces_by : str or None
-        What made the namespaces.
     not_stopped : tuple of str or None
         What student code could have done.
     given_up : str or None
@@ -208,7 +206,6 @@ class Isolation(AsJson):
 
     layers: tuple[str, ...] = ()
     weak: bool = False
-    namespaces_by: str | None = field(default=None, metadata={"key": "namespaces made by"})
     not_stopped: tuple[str, ...] | None = None
     given_up: str | None = None
 

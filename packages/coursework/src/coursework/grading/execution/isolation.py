@@ -8,10 +8,9 @@ namespaces
     The warm parent and its children see a root folder made for them: Python, its libraries and
     nothing else, read only; a network with no way out; no processes but their own, so that ending
     the first ends all. Each notebook has its own scratch folder, in memory and of limited size.
-    Made by bubblewrap where it is installed and works, else by our own calls. Does not limit memory
-    or processor, and leaves the kernel's whole surface open. Missing on systems that forbid
-    unprivileged user namespaces (Ubuntu 24.04 does), inside most containers, and always without
-    Linux.
+    Made by bubblewrap, where it is installed and works. Does not limit memory or processor, and
+    leaves the kernel's whole surface open. Missing on systems that forbid unprivileged user
+    namespaces (Ubuntu 24.04 does), inside most containers, and always without Linux.
 landlock
     The kernel lets the process read Python's own files and write in its scratch folder only. From
     Linux 6.2 it can stand in for the root folder of its own; from 6.7 it refuses TCP, from 6.12
@@ -60,8 +59,8 @@ LIMITS, PRIVILEGES = "resource limits", "no privileges"
 LAYERS = (NAMESPACES, LANDLOCK, SECCOMP, LIMITS, PRIVILEGES)
 
 HOW_TO_GET = {
-    NAMESPACES: "install bubblewrap, or allow unprivileged user namespaces (sysctl "
-    "kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu), or start as root",
+    NAMESPACES: "install bubblewrap, and allow unprivileged user namespaces (sysctl "
+    "kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu) or start as root",
     LANDLOCK: "use Linux 6.2 or newer with Landlock enabled (lsm=landlock,... on the kernel's "
     "command line)",
     SECCOMP: "use Linux on x86-64 or ARM64 with seccomp filters, and no container that forbids "
@@ -103,7 +102,7 @@ Target = TypedDict(
         "threads in use": NotRequired[int],
     },
 )
-Layer = TypedDict("Layer", {"in force": bool, "why not": str, "made by": NotRequired[str]})
+Layer = TypedDict("Layer", {"in force": bool, "why not": str})
 #: What came of trying it.
 Report = TypedDict(
     "Report",
@@ -184,33 +183,14 @@ def readable_paths() -> list[str]:
 
 # ---- namespaces
 
-CLONE_NEWNS, CLONE_NEWCGROUP, CLONE_NEWUTS, CLONE_NEWIPC = (
-    0x00020000,
-    0x02000000,
-    0x04000000,
-    0x08000000,
-)
-CLONE_NEWUSER, CLONE_NEWPID, CLONE_NEWNET = 0x10000000, 0x20000000, 0x40000000
+CLONE_NEWNS, CLONE_NEWUSER, CLONE_NEWPID = 0x00020000, 0x10000000, 0x20000000
 MS_NOSUID, MS_NODEV, MS_REC, MS_PRIVATE = 2, 4, 16384, 1 << 18
-AT_FDCWD, AT_EMPTY_PATH, AT_RECURSIVE, MNT_DETACH = -100, 0x1000, 0x8000, 2
-OPEN_TREE, MOVE_MOUNT, MOUNT_SETATTR = 428, 429, 442
-PIVOT_ROOT = {"x86_64": 155, "aarch64": 41}
-READ_ONLY, NO_SETUID, NO_DEVICES = 1, 2, 4  # attributes of a mount
 OUTSIDER = 65534
 SCRATCH = "/scratch"
 
 
-def _places(readable: Iterable[str]) -> dict[str, str]:
-    """Where each readable path must be found: where it is named, and where its links lead."""
-    places: dict[str, str] = {}
-    for path in readable:
-        for name in (path, os.path.realpath(path)):
-            places.setdefault(name, path)
-    return places
-
-
 def bubblewrap_command(bubblewrap: str, readable: Iterable[str]) -> list[str]:
-    """The command line in front of the warm parent that gives it namespaces by bubblewrap."""
+    """The command line in front of the warm parent that gives it namespaces."""
     command = [bubblewrap, "--as-pid-1", "--die-with-parent", "--cap-drop", "ALL"]
     for namespace in ("ipc", "pid", "net", "uts", "cgroup-try"):
         command.append(f"--unshare-{namespace}")
@@ -229,7 +209,11 @@ def bubblewrap_command(bubblewrap: str, readable: Iterable[str]) -> list[str]:
         "FOWNER",
     ):
         command += ["--cap-add", f"CAP_{capability}"]
-    places = _places(readable)
+    # Each path must be found where it is named, and where its links lead.
+    places: dict[str, str] = {}
+    for path in readable:
+        for name in (path, os.path.realpath(path)):
+            places.setdefault(name, path)
     # Folders on the way would be closed to the user that root gives the code to.
     on_the_way = (
         {str(parent) for name in places for parent in Path(name).parents} - {"/"} - set(places)
@@ -244,26 +228,6 @@ def bubblewrap_command(bubblewrap: str, readable: Iterable[str]) -> list[str]:
     return [*command, "--remount-ro", "/", "--chdir", "/", "--"]
 
 
-def unshare_all() -> None:
-    """Leave the machine's namespaces; the process that is forked
-    next is the first of the new ones.
-    """
-    others = (
-        CLONE_NEWNS | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWPID | CLONE_NEWNET | CLONE_NEWCGROUP
-    )
-    user, group = os.geteuid(), os.getegid()
-    if user == 0 and _library.unshare(others) == 0:
-        return
-    _call("unshare", _library.unshare(CLONE_NEWUSER | others))
-    # A user namespace of its own, in which it is somebody without a name.
-    try:
-        Path("/proc/self/setgroups").write_text("deny")
-        Path("/proc/self/uid_map").write_text(f"{OUTSIDER} {user} 1")
-        Path("/proc/self/gid_map").write_text(f"{OUTSIDER} {group} 1")
-    except OSError as error:
-        raise IsolationError(error.errno, f"user namespace: {error.strerror}") from None
-
-
 def unshare_processes() -> None:
     """Have the process that is forked next be the first of a namespace in
     which only those below it are seen.
@@ -271,61 +235,13 @@ def unshare_processes() -> None:
     _call("unshare", _library.unshare(CLONE_NEWPID))
 
 
-def enter_own_root(readable: Iterable[str]) -> None:
-    """Change to a root folder that holds `readable`, a few devices and a
-    scratch folder, and is read only.
-    """
-    _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))
-    trees = []
-    for name, path in _places([*readable, *DEVICES]).items():
-        # The first flag: a copy that can be mounted elsewhere.
-        tree = _system_call(
-            "open_tree", OPEN_TREE, AT_FDCWD, path.encode(), 1 | os.O_CLOEXEC | AT_RECURSIVE
-        )
-        attributes = READ_ONLY | NO_SETUID | (0 if path in DEVICES else NO_DEVICES)
-        _set_attributes(tree, b"", AT_EMPTY_PATH | AT_RECURSIVE, attributes)
-        trees.append((tree, name, os.path.isdir(path)))
-    new = "/tmp"
-    _mount_memory(new, "size=1m,mode=0755")
-    mask = os.umask(0o022)
-    for tree, name, is_folder in trees:
-        target = new + name
-        os.makedirs(target if is_folder else os.path.dirname(target), exist_ok=True)
-        if not is_folder:
-            Path(target).touch()
-        # The flag: the source is the handle itself.
-        _system_call("move_mount", MOVE_MOUNT, tree, b"", AT_FDCWD, target.encode(), 4)
-        os.close(tree)
-    os.mkdir(new + SCRATCH)
-    os.symlink(SCRATCH, new + "/dev/shm")
-    os.umask(mask)
-    _mount_memory(new + SCRATCH, "size=256m,mode=0755")
-    os.chdir(new)
-    _system_call("pivot_root", PIVOT_ROOT[os.uname().machine], b".", b".")
-    _call("umount", _library.umount2(b".", MNT_DETACH))
-    os.chdir("/")
-    _set_attributes(AT_FDCWD, b"/", 0, READ_ONLY)
-
-
-def _set_attributes(tree: int, path: bytes, flags: int, attributes: int) -> None:
-    packed = struct.pack("=QQQQ", attributes, 0, 0, 0)
-    _system_call("mount_setattr", MOUNT_SETATTR, tree, path, flags, packed, len(packed))
-
-
-def _mount_memory(folder: str, options: str) -> None:
-    _call(
-        "mount",
-        _library.mount(b"tmpfs", folder.encode(), b"tmpfs", MS_NOSUID | MS_NODEV, options.encode()),
-    )
-
-
 def mount_own_scratch(folder: str, size: int, user: int) -> None:
     """Give this process alone a scratch folder in memory; it vanishes with the process."""
     _call("unshare", _library.unshare(CLONE_NEWNS))
     _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))
-    _mount_memory(
-        folder, f"size={size},nr_inodes={max(64, size // 4096)},mode=0700,uid={user},gid={user}"
-    )
+    options = f"size={size},nr_inodes={max(64, size // 4096)},mode=0700,uid={user},gid={user}"
+    flags = MS_NOSUID | MS_NODEV
+    _call("mount", _library.mount(b"tmpfs", folder.encode(), b"tmpfs", flags, options.encode()))
 
 
 # ---- Landlock

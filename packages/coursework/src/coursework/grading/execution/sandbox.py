@@ -140,8 +140,6 @@ class Sandbox:
     without : collection of str
         Layers to leave out, of :data:`coursework.grading.execution.isolation.LAYERS`; then the
         isolation is weak.
-    namespaces_by : collection of str
-        Which makers of namespaces to try, in order.
     like : Sandbox, optional
         One that runs no notebooks: this one gets a copy of its warm parent, if that can be copied.
 
@@ -157,7 +155,6 @@ class Sandbox:
         *,
         allow_weak_isolation: bool = False,
         without: Collection[str] = (),
-        namespaces_by: Iterable[str] = ("bubblewrap", "unshare"),
         like: Sandbox | None = None,
     ) -> None:
         unknown = set(without) - set(LAYERS)
@@ -172,7 +169,6 @@ class Sandbox:
         self.limits = limits or Limits()
         self.allow_weak_isolation = allow_weak_isolation
         self.without = frozenset(without)
-        self.namespaces_by = () if NAMESPACES in self.without else tuple(namespaces_by)
         self.like = like
         self.process: subprocess.Popen[bytes] | None = None
         self.warm_parent: int | None = None  # its number
@@ -195,25 +191,8 @@ class Sandbox:
         try:
             with contextlib.ExitStack() as stack:
                 target = self.target(stack)
-                why_not = "switched off"
-                for made_by in (*self.namespaces_by, None) if not self.copied(target) else ():
-                    command: list[str] = []
-                    if made_by == "bubblewrap":
-                        bubblewrap = shutil.which("bwrap")
-                        if bubblewrap is None:
-                            why_not = "bubblewrap is not installed"
-                            continue
-                        command = isolation.bubblewrap_command(
-                            bubblewrap, isolation.readable_paths()
-                        )
-                    try:
-                        self.report = self.launched(command, made_by, why_not, target)
-                        break
-                    except WorkerDied as error:
-                        self.close()
-                        if made_by is None:
-                            raise
-                        why_not = str(error)
+                if not self.copied(target):
+                    self.report = self.launched(target)
         except BaseException:
             self.close()
             raise
@@ -287,10 +266,22 @@ class Sandbox:
             "limits": self.limits.for_child(),
         }
 
-    def launched(
-        self, command: Sequence[str], made_by: str | None, why_not: str, target: Target
-    ) -> Report:
-        """Start the warm parent behind `command`; give its report."""
+    def launched(self, target: Target) -> Report:
+        """Start the warm parent, in namespaces where they can be had; give its report."""
+        bubblewrap, why_not = shutil.which("bwrap"), "bubblewrap is not installed"
+        if NAMESPACES in self.without:
+            why_not = "switched off"
+        elif bubblewrap is not None:
+            try:
+                readable = isolation.readable_paths()
+                return self.launched_by(isolation.bubblewrap_command(bubblewrap, readable), target)
+            except WorkerDied as error:
+                self.close()
+                why_not = str(error)
+        return self.launched_by([], target, why_not)
+
+    def launched_by(self, command: Sequence[str], target: Target, why_not: str = "") -> Report:
+        """Start the warm parent behind `command`; `why_not` says why it is in no namespaces."""
         self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         processes = os.open("/proc", os.O_RDONLY | os.O_DIRECTORY)
         self.errors = tempfile.TemporaryFile()
@@ -347,7 +338,6 @@ class Sandbox:
             # open to all is not left behind.
             "target": target | {"files": [file_outside(self.base)]},
             "base": self.base,
-            "namespaces made by": made_by,
             "why no namespaces": why_not,
             "user": new_user(),
             "threads in use": 0 if os.geteuid() == 0 else threads_of(os.geteuid()),
@@ -443,9 +433,7 @@ class Sandbox:
         """The isolation, as every result records it."""
         layers, not_stopped = self.report["layers"], self.report["not stopped"]
         in_force = tuple(layer for layer in LAYERS if layers[layer]["in force"])
-        return Isolation(
-            in_force, bool(not_stopped), layers[NAMESPACES]["made by"], tuple(not_stopped)
-        )
+        return Isolation(in_force, bool(not_stopped), tuple(not_stopped))
 
 
 class _Run:

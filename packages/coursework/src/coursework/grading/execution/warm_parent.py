@@ -30,7 +30,7 @@ import select
 import signal
 import socket
 import sys
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NoReturn, TypedDict
 
@@ -65,8 +65,7 @@ Start = TypedDict(
         "base": str,
         "threads in use": int,
         "user": int,
-        "namespaces made by": str | None,
-        "why no namespaces": str,
+        "why no namespaces": str,  # empty within namespaces
     },
 )
 
@@ -98,46 +97,6 @@ class Message(TypedDict, total=False):
     run: Run
     copy: Copy
     kill: bool
-
-
-def into_namespaces(control: socket.socket, readable: Iterable[str]) -> str | None:
-    """Continue in namespaces of our own. Returns None, in the
-    process inside, or why it cannot be.
-    """
-    reading, writing = os.pipe()
-    outer = os.getpid()
-    if os.fork() == 0:
-        try:
-            isolation.die_with_parent()
-            if os.getppid() != outer:
-                os._exit(1)
-            isolation.unshare_all()
-            inner = os.fork()
-            if inner == 0:
-                isolation.die_with_parent()
-                isolation.enter_own_root(readable)
-                os.write(writing, b"in")
-                os.close(writing)
-                os.close(reading)
-                return None
-            control.close()
-            os.close(writing)
-            _, status = os.waitpid(inner, 0)
-            os._exit(0 if status == 0 else 1)
-        except OSError as error:
-            os.write(writing, str(error).encode())
-            os._exit(1)
-    os.close(writing)
-    said = b""
-    while part := os.read(reading, 1000):
-        said += part
-    os.close(reading)
-    if said == b"in":
-        control.close()  # the process inside has its own handle
-        os.wait()
-        os._exit(0)
-    os.wait()
-    return said.decode(errors="replace") or "it exited without an error message"
 
 
 def load_libraries() -> None:
@@ -204,19 +163,17 @@ class WarmParent:
         processes: int,
         start: Start,
         readable: Sequence[str],
-        made_by: str | None,
-        why_no_namespaces: str | None,
     ) -> None:
         self.control = control
         self.off = set(start["without"])
         self.target = start["target"]
         self.readable = readable
-        self.made_by = made_by
-        self.why_no_namespaces = why_no_namespaces
-        self.first_of_its_namespace = made_by is not None and os.getpid() == 1
-        self.base = isolation.SCRATCH if made_by else start["base"]
+        self.why_no_namespaces = start["why no namespaces"]
+        # What a process does in namespaces, before it is known whether they stop enough.
+        self.own_scratch = self.first_of_its_namespace = not self.why_no_namespaces
+        self.base = isolation.SCRATCH if self.own_scratch else start["base"]
         # Namespaces of an ordinary user count their own threads only.
-        self.threads_in_use = 0 if made_by else start["threads in use"]
+        self.threads_in_use = 0 if self.own_scratch else start["threads in use"]
         self.user = isolation.user_for_students(start["user"], about_itself(processes, "uid_map"))
         if not self.first_of_its_namespace:
             isolation.adopt_orphans()
@@ -229,7 +186,6 @@ class WarmParent:
             "SC_PAGE_SIZE"
         )
         os.close(processes)
-        self.own_scratch = made_by is not None
         self.layers: list[str] = []
         self.count = 0
 
@@ -356,8 +312,6 @@ class WarmParent:
                 layers[layer] = {"in force": why_not is None, "why not": why_not or ""}
                 if why_not is None:
                     self.layers.append(layer)
-            in_force = layers[NAMESPACES]["in force"]
-            layers[NAMESPACES]["made by"] = (self.made_by or "") if in_force else ""
             not_stopped = self.not_stopped(everywhere)
         self.said: Report = {
             "layers": layers,
@@ -396,7 +350,7 @@ class WarmParent:
     def why_not(self, layer: str, target: Target) -> str | None:
         if layer in self.off:
             return "switched off"
-        if layer == NAMESPACES and self.made_by is None:
+        if layer == NAMESPACES and self.why_no_namespaces:
             return self.why_no_namespaces
         # A limit binds users, and root is none: it is tried as the user it is for.
         alone = [LIMITS, PRIVILEGES] if layer == LIMITS else [layer]
@@ -533,14 +487,8 @@ def main() -> None:
     message, _ = receive(control)
     if message is None:
         return  # whoever started it has ended
-    start = message["start"]
     readable = isolation.readable_paths()
-    made_by = start["namespaces made by"]
-    why_not: str | None = start["why no namespaces"]
-    if made_by == "unshare":
-        why_not = into_namespaces(control, readable)
-        made_by = None if why_not else "unshare"
-    server = WarmParent(control, int(sys.argv[2]), start, readable, made_by, why_not)
+    server = WarmParent(control, int(sys.argv[2]), message["start"], readable)
     report = server.report()
     gc.collect()
     gc.freeze()
