@@ -6,7 +6,6 @@ import contextlib
 import json
 import random
 from dataclasses import replace
-from types import SimpleNamespace
 
 import pytest
 import sympy as sm
@@ -14,7 +13,6 @@ from grading_class import write_sources
 
 from coursework.authoring import author
 from coursework.authoring.release import read_source
-from coursework.authoring.source import cells_needed
 from coursework.checking.evaluate import MOST_WORK, TooLarge, values
 from coursework.checking.mistakes import MESSAGES
 from coursework.checking.plain import MOST_NODES, NotPlain, to_plain
@@ -237,29 +235,6 @@ def test_secret_calls_are_others_than_those_of_the_check(function, calls, others
     for number in range(10):
         made = secret.secret_of(question, b"secret %d" % number).calls
         assert any(call not in calls for call in made) == others
-
-
-CELLS = (
-    "import sympy as sm\na, b = sm.symbols('a b')\nslow = []",
-    "turned = [1]\ndef size():\n    return later",
-    "given = draw('levers/one', arm=[2, 3, 4])",
-    "slow.append(1)\nunused = sm.simplify(a)",
-    "later = given.arm\nturned.append(2)",
-    "one = size()*a + turned[1]",
-    "check('levers/one', one)\nquestion('levers/one', kind='expression', symbols='a')",
-    "two = b*len(slow)",
-    "check('levers/two', two)\nquestion('levers/two', kind='expression', symbols='b')",
-)
-
-
-def test_the_cells_that_a_question_needs_are_found():
-    cells = [SimpleNamespace(cell_type="code", source=source) for source in CELLS]
-    notebook = SimpleNamespace(
-        cells=[*cells, SimpleNamespace(cell_type="markdown", source="levers/one")]
-    )
-    assert cells_needed(notebook, ["levers/one"]) == {0, 1, 2, 4, 5, 6}
-    assert cells_needed(notebook, ["levers/two"]) == {0, 3, 7, 8}
-    assert cells_needed(notebook, []) == set()
 
 
 def test_equal_answers_are_judged_once_and_are_no_less_apart(questions, monkeypatch):

@@ -172,7 +172,7 @@ def read_source(
     edition : str
         Of a course: each edition draws afresh.
     only : collection of str, optional
-        The questions that are wanted: cells that these do not need are not run.
+        The questions that are wanted.
     pictures : bool, optional
         Whether the pictures of variants are drawn; if nothing is said, where all questions are
         wanted.
@@ -260,16 +260,6 @@ def read_source(
         "draw": draw,
         "drawing": Drawing,
     }
-    # A figure is nobody's answer: it is drawn where pictures are
-    # asked for, and once for all variants.
-    plots = [
-        number
-        for number, cell in enumerate(notebook.cells)
-        if "figure" in cell.metadata.get("tags", [])
-    ]
-    needed = set(range(len(notebook.cells)))
-    if only is not None:
-        needed = cells_needed(notebook, only, plots if pictures and not variant else ())
     said = {
         "check": answers.__setitem__,
         "student": lambda identity="": identities.append(identity),
@@ -278,7 +268,7 @@ def read_source(
         for name, record in said.items():
             replaced.enter_context(_replaced(coursework, name, record))
         for number, cell in enumerate(notebook.cells):
-            if cell.cell_type != "code" or number not in needed:
+            if cell.cell_type != "code":
                 continue
             try:
                 value = _run(cell.source, namespace, f"{path.name}, cell {number}")
@@ -514,88 +504,6 @@ def _run(source: str, namespace: dict[str, Any], where: str) -> Any:
     if isinstance(last, ast.Expr):
         return eval(compile(ast.Expression(last.value), where, "eval"), namespace)
     return None
-
-
-def cells_needed(
-    notebook: NotebookNode, names: Iterable[str], also: Collection[int] = ()
-) -> set[int]:
-    """The numbers of the code cells that some questions of a notebook need: by
-    the names that cells bind and use.
-
-    What a cell binds or changes and a needed cell uses makes it needed too. Rather too many than
-    too few: which of several values a name has when a function is called is not followed.
-    """
-    uses = {
-        number: _Uses(cell.source)
-        for number, cell in enumerate(notebook.cells)
-        if cell.cell_type == "code"
-    }
-    needed = {number for number, cell in uses.items() if cell.texts & set(names) or number in also}
-    while True:
-        # What a function uses it may use as late as it is called.
-        wanted, before = (
-            {name for number in needed for name in uses[number].in_functions},
-            len(needed),
-        )
-        for number, cell in sorted(uses.items(), reverse=True):
-            if number in needed or cell.bound & wanted:
-                needed.add(number)
-                wanted |= cell.used
-        if len(needed) == before:
-            return needed
-
-
-class _Uses(ast.NodeVisitor):
-    """What a cell binds or may change, what it uses, at once or in
-    its functions, and the texts in it.
-    """
-
-    #: Functions that change nothing of what they are given.
-    HARMLESS = ("check", "question", "draw", "print", "display")
-
-    def __init__(self, source: str) -> None:
-        self.bound, self.used, self.in_functions, self.texts = (set[str]() for _ in range(4))
-        self.depth = 0
-        self.visit(ast.parse(source))
-
-    def visit_Name(self, node: ast.Name) -> None:
-        if isinstance(node.ctx, ast.Load):
-            self.used.add(node.id)
-            if self.depth:
-                self.in_functions.add(node.id)
-        else:
-            self.bound.add(node.id)
-
-    def visit_Constant(self, node: ast.Constant) -> None:
-        if isinstance(node.value, str):
-            self.texts.add(node.value)
-
-    def visit_alias(self, node: ast.alias) -> None:
-        self.bound.add((node.asname or node.name).partition(".")[0])
-
-    def visit_FunctionDef(self, node: ast.AST) -> None:
-        if hasattr(node, "name"):
-            self.bound.add(node.name)
-        self.depth += 1
-        self.generic_visit(node)
-        self.depth -= 1
-
-    visit_AsyncFunctionDef = visit_ClassDef = visit_Lambda = visit_FunctionDef
-
-    def visit_Expr(self, node: ast.Expr) -> None:
-        if (
-            isinstance(node.value, ast.Call)
-            and getattr(node.value.func, "id", "") not in self.HARMLESS
-        ):
-            self.bound |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
-        self.generic_visit(node)
-
-    def visit_Attribute(self, node: ast.Attribute | ast.Subscript) -> None:
-        if not isinstance(node.ctx, ast.Load):
-            self.bound |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
-        self.generic_visit(node)
-
-    visit_Subscript = visit_Attribute
 
 
 def checked_names(notebook: NotebookNode) -> dict[str, str]:
