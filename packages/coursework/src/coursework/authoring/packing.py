@@ -43,6 +43,7 @@ DISTRIBUTIONS = {
             "nbformat",
             "numpy",
             "packaging",
+            "pillow",
             "pyyaml",  # Gradescope's table of submissions
             "tornado",  # the page to judge in
         ),
