@@ -20,7 +20,6 @@ from ..checking.plugins import kinds
 from ..checking.reading import read, tolerances
 from ..checking.variants import text_of
 from . import exporting
-from .asking import PICTURE
 from .author import AuthoredQuestion, AuthorError
 from .course import Course
 from .exporting import Item, Wrong
@@ -42,6 +41,7 @@ if TYPE_CHECKING:
 
 OPPOSITES = "an answer and its opposite are right, and Moodle marks each number by itself"
 #: The line in which students write their answer.
+PICTURE = re.compile(r"!\[([^\]]*)\]\([^)]*\)|<img[^>]*alt=\"([^\"]*)\"[^>]*>")
 BLANK = re.compile(r"^.*# your answer\n?", re.M)
 #: The note of an answer with one wrong entry, whatever that is: it has no values of its own.
 ONE_WRONG = "one wrong"

@@ -1,5 +1,5 @@
-"""The commands of authors: ``coursework new``, ``release``, ``publish``, ``try``, ``ask``,
-``bank``, ``selftest`` and ``wheels``.
+"""The commands of authors: ``coursework new``, ``release``, ``publish``, ``try``, ``bank``,
+``selftest`` and ``wheels``.
 """
 
 from __future__ import annotations
@@ -81,24 +81,6 @@ ARGUMENTS = {
                 help="a question, or a notebook to show all of its questions",
             ),
             argument("--page", help="file for the page (default: try.html, beside the archive)"),
-        ],
-    ),
-    "ask": (
-        "print a notebook's questions as text to give to a language model",
-        [
-            argument("notebook", type=Path, metavar="NOTEBOOK.ipynb", help="an exercise notebook"),
-            argument(
-                "--answers",
-                type=Path,
-                metavar="REPLY",
-                help="file with the model's reply (needs --to)",
-            ),
-            argument(
-                "--to",
-                type=Path,
-                metavar="FILE.ipynb",
-                help="file for the notebook with those answers",
-            ),
         ],
     ),
     "bank": (
@@ -215,19 +197,6 @@ def trial(name: str, page: str | None) -> None:
     )
 
 
-def ask(notebook: Path, answers: Path | None, to: Path | None) -> None:
-    from .asking import as_text, with_answers
-    from .author import AuthorError
-
-    if (answers is None) != (to is None):
-        raise AuthorError("give both --answers and --to to read a reply, or neither")
-    if answers is None or to is None:
-        print(as_text(notebook))
-        return
-    answered = with_answers(notebook, answers.read_text("utf8"), to)
-    print(f"{to} answers {', '.join(answered)}. Mark it with `coursework grade`.")
-
-
 def bank(out: Path, format: str, questions: Sequence[str]) -> None:
     from .bank import bank as write
 
@@ -257,7 +226,6 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "release": release,
     "publish": publish,
     "try": trial,
-    "ask": ask,
     "bank": bank,
     "selftest": selftest,
     "wheels": wheels,
