@@ -118,7 +118,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     assert "imported: 0." in run("merge marks appeals.csv --grader Ann")
     run("term marks")
     assert '"ben","100"' in (folder / "marks" / "course" / "course.csv").read_text()
-    # The next term: other people, other numbers, and the counts of the first beside them.
+    # The next term: other people, and other numbers.
     edited(folder / "course.toml", 'title = "My course"', 'title = "My course"\nedition = "2027"')
     run("release first-steps")
     (folder / "next.csv").write_text("student\neva\nfay\n")
@@ -126,8 +126,6 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     assert "already exists" in run("term new marks-2027 --roster next.csv", fails=True)
     hand_in(folder, "next/eva/first-steps.ipynb")
     run("grade next --out marks-2027")
-    run("term marks-2027 --earlier marks/course/counts.json")
-    assert "My course" in (folder / "marks-2027" / "course" / "statistics.html").read_text()
     assert "6 points" not in run("why eva first-steps --marks marks-2027")
 
 

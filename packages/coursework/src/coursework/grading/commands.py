@@ -170,13 +170,6 @@ ARGUMENTS = {
             OUT,
             SOLUTIONS,
             argument("--roster", metavar="FILE.csv", help="roster of the course (only with 'new')"),
-            argument(
-                "--earlier",
-                nargs="+",
-                default=[],
-                metavar="counts.json",
-                help="counts of earlier years, to compare with this one",
-            ),
         ],
     ),
     "export": (
@@ -474,7 +467,6 @@ def term(
     out: str,
     solutions: str | None,
     roster: str | None,
-    earlier: Sequence[str],
 ) -> None:
     from .judging.term import FILE, new_term, read_term
     from .reporting.course_pages import FOLDER, write_course
@@ -490,7 +482,7 @@ def term(
             "coursework term: --roster works only with 'term new'. Later, change it in term.toml."
         )
     print(
-        *write_course(Store(out), read_term(Path(out, FILE)), earlier=earlier),
+        *write_course(Store(out), read_term(Path(out, FILE))),
         f"The course: {out}/{FOLDER}/course.csv, and statistics.html beside it",
         sep="\n",
     )

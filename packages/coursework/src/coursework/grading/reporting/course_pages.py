@@ -1,18 +1,15 @@
 """Writes a table of all marks of a course, a page for each student, and pages on the questions."""
 
 import datetime
-import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from ...checking.writing import answer_as_text
-from ..judging.term import DAMAGED, FILE, BadTerm, Result, Term, results_of, unknown_times
-from ..reading import AsJson
-from ..store import Store, as_text, file_name, write
+from ..judging.term import DAMAGED, FILE, Result, Term, results_of, unknown_times
+from ..store import Store, file_name, write
 from ..submissions.intake import refused_of
-from ..tables import number, table
-from .statistics import FORMAT, Question, Same, Statistics
+from ..tables import table
+from .statistics import Question, Same, Statistics
 from .templates_of_pages import ENVIRONMENT, page
 
 FOLDER = "course"
@@ -37,38 +34,13 @@ MOST_ANSWERS = 100  # of one group on one page
 ENVIRONMENT.filters["moment"] = lambda moment: moment.strftime("%Y-%m-%d %H:%M %Z")
 
 
-@dataclass(frozen=True)
-class Then(AsJson):
-    """A question of an earlier year: the mean share of the credit, and the version."""
-
-    version: str
-    share: float | None = None
-
-
-@dataclass(frozen=True)
-class Year(AsJson):
-    """What was kept of an earlier year."""
-
-    format: int
-    name: str
-    questions: Mapping[str, Then]
-
-
-def write_course(
-    store: Store,
-    term: Term,
-    *,
-    earlier: Iterable[str | Path] = (),
-    now: datetime.datetime | None = None,
-) -> list[str]:
+def write_course(store: Store, term: Term, *, now: datetime.datetime | None = None) -> list[str]:
     """Write the totals of a course into the folder ``course`` of the results.
 
     Parameters
     ----------
     store : Store
     term : Term
-    earlier : iterable of path
-        Counts that were kept of other years.
     now : datetime, optional
 
     Returns
@@ -79,10 +51,9 @@ def write_course(
     Raises
     ------
     BadTerm
-        An extension is for nobody in the course, or counts cannot be read.
+        An extension is for nobody in the course.
     """
     now = now or datetime.datetime.now(datetime.UTC)
-    counts = [_earlier(path) for path in earlier]
     statistics = Statistics()
     worth: dict[str, float] = {}
     students: set[str] = set()
@@ -117,8 +88,7 @@ def write_course(
         for name, those in damaged.items()
     ]
     write(folder / "course.csv", table(_header(term), rows))
-    _write_questions(folder, statistics, term.name, counts)
-    write(folder / "counts.json", as_text(statistics.counts(term.name)))
+    _write_questions(folder, statistics, term.name)
     return lines
 
 
@@ -184,9 +154,7 @@ def _write_student(
     write(folder / "students" / f"{file_name(student)}.html", content, lasting=False)
 
 
-def _write_questions(
-    folder: Path, statistics: Statistics, name: str, counts: Sequence[Year]
-) -> None:
+def _write_questions(folder: Path, statistics: Statistics, name: str) -> None:
     assignments: dict[str, list[dict[str, object]]] = {}
     for (assignment, question), found in statistics.questions.items():
         place = f"answers/{file_name(assignment + ' ' + question)}.html"
@@ -196,15 +164,13 @@ def _write_questions(
             page("answers.html", found=found, question=question, groups=groups, words=OUTCOMES),
             lasting=False,
         )
-        before = [_share_then(year, question, found) for year in counts]
         assignments.setdefault(assignment, []).append(
-            {"found": found, "page": place, "anchors": anchors, "earlier": before}
+            {"found": found, "page": place, "anchors": anchors}
         )
     content = page(
         "statistics.html",
         name=name,
         assignments=sorted(assignments.items()),
-        labels=[year.name for year in counts],
     )
     write(folder / "statistics.html", content)
 
@@ -253,21 +219,3 @@ def _groups(found: Question, assignment: str) -> tuple[list[dict[str, object]], 
             }
         )
     return made, anchors
-
-
-def _earlier(path: str | Path) -> Year:
-    try:
-        year = Year.from_json(json.loads(Path(path).read_text("utf8")), "it")
-        if year.format != FORMAT:
-            raise ValueError("it has a different format")
-        return year
-    except (OSError, ValueError) as error:
-        raise BadTerm(f"{path} does not contain course statistics ({error}).") from None
-
-
-def _share_then(year: Year, question: str, found: Question) -> str:
-    then = year.questions.get(question)
-    if not then or then.share is None:
-        return ""
-    same = then.version in found.versions
-    return f"{number(round(100 * then.share))} %{'' if same else ' *'}"

@@ -1,63 +1,42 @@
 """What the class says of each question: how hard it is, whether it tells
 students apart, and what was mixed up.
 
-One record after another is taken in, and what is kept grows with the number of different answers,
-not with the class. The counts of a year hold nobody's name and nobody's answer; they can be kept,
-and the next year stands beside them.
+One record after another is taken in, and of equal answers only one is kept.
 """
 
 import math
-from collections import Counter, defaultdict
-from collections.abc import Mapping
+import statistics
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple, Self
 
-from ...checking.fields import Json
 from ...checking.plain import Plain
 from ..judging.journal import digest_of_answer
 from ..record import Mark, Record
 from .reports import deed
 
 FEWEST = 10  # students, below which a correlation says nothing
-#: What fewer did is put together with the others, so that a count points at nobody.
-HIDDEN_BELOW = 3
 MOST_NAMES = 40  # of those who gave one answer
-FORMAT = 1
 
 
-class Correlation:
-    """Pearson's correlation of pairs that come one after another."""
+class Correlation(NamedTuple):
+    """Pearson's correlation, and its 95 % interval by Fisher's transformation."""
 
-    def __init__(self) -> None:
-        self.number = 0
-        self.x = self.y = self.xx = self.yy = self.xy = 0.0
+    value: float
+    low: float
+    high: float
 
-    def add(self, x: float, y: float) -> None:
-        self.number += 1
-        self.x += x
-        self.y += y
-        self.xx += x * x
-        self.yy += y * y
-        self.xy += x * y
-
-    @property
-    def value(self) -> float | None:
+    @classmethod
+    def of(cls, pairs: Sequence[tuple[float, float]]) -> Self | None:
         """``None`` for too few pairs, or where one of the two does not vary."""
-        spread = (self.number * self.xx - self.x**2) * (self.number * self.yy - self.y**2)
-        if self.number < FEWEST or spread <= 1e-9 * self.number**4:
+        columns = list(zip(*pairs, strict=True))
+        if len(pairs) < FEWEST or min(len(set(column)) for column in columns) == 1:
             return None
-        return max(-1.0, min(1.0, (self.number * self.xy - self.x * self.y) / math.sqrt(spread)))
-
-    @property
-    def interval(self) -> tuple[float, float] | None:
-        """The 95 % interval by Fisher's transformation, or ``None``."""
-        value = self.value
-        if value is None:
-            return None
-        middle, half = (
-            math.atanh(max(-0.999999, min(0.999999, value))),
-            1.96 / math.sqrt(self.number - 3),
-        )
-        return math.tanh(middle - half), math.tanh(middle + half)
+        value = statistics.correlation(*columns)
+        middle = math.atanh(max(-0.999999, min(0.999999, value)))
+        half = 1.96 / math.sqrt(len(pairs) - 3)
+        return cls(value, math.tanh(middle - half), math.tanh(middle + half))
 
 
 @dataclass
@@ -77,8 +56,8 @@ class Question:
     outcomes : Counter
     earned : float
         The sum of the shares of credit, without answers that wait for a person.
-    discrimination : Correlation
-        Of the share earned here with the share earned in the rest of the assignment.
+    shares : list
+        For each student, the share earned here and that earned in the rest of the assignment.
     notes : Counter
         What was mixed up, in words.
     answers : dict of Same
@@ -90,13 +69,16 @@ class Question:
         self.outcomes: Counter[str] = Counter()
         self.notes: Counter[str] = Counter()
         self.earned, self.decided = 0.0, 0
-        self.discrimination = Correlation()
+        self.shares: list[tuple[float, float]] = []
         self.answers: dict[tuple[str, str, str], Same] = {}
-        self.versions: set[str] = set()
 
     @property
     def number(self) -> int:
         return sum(self.outcomes.values())
+
+    @property
+    def discrimination(self) -> Correlation | None:
+        return Correlation.of(self.shares)
 
     @property
     def difficulty(self) -> float | None:
@@ -109,11 +91,9 @@ class Statistics:
 
     def __init__(self) -> None:
         self.questions: dict[tuple[str, str], Question] = {}
-        self.students: defaultdict[str, int] = defaultdict(int)
 
     def add(self, record: Record) -> None:
         marks = record.marks
-        self.students[record.assignment] += 1
         earned = sum(mark.points for mark in marks.values())
         worth = sum(mark.worth for mark in marks.values())
         for name, mark in marks.items():
@@ -122,7 +102,6 @@ class Statistics:
                 self.questions[key] = Question(record.assignment, mark)
             question = self.questions[key]
             question.outcomes[mark.outcome] += 1
-            question.versions.add(mark.version)
             did = deed(mark) if mark.note and mark.outcome in ("wrong", "invalid") else ""
             if did:
                 question.notes[did] += 1
@@ -137,35 +116,5 @@ class Statistics:
             question.decided += 1
             question.earned += share
             if worth > mark.worth:
-                question.discrimination.add(share, (earned - mark.points) / (worth - mark.worth))
-
-    def counts(self, name: str) -> dict[str, Json]:
-        """What can be kept for other years: numbers only, and none of so
-        few that it points at somebody.
-        """
-        return {
-            "format": FORMAT,
-            "name": name,
-            "questions": {
-                question: {
-                    "assignment": assignment,
-                    "version": min(found.versions) if len(found.versions) == 1 else "",
-                    "students": found.number,
-                    "share": None if found.difficulty is None else round(found.difficulty, 4),
-                    "discrimination": None
-                    if found.discrimination.value is None
-                    else round(found.discrimination.value, 4),
-                    "mix-ups": _without_few(found.notes),
-                }
-                for (assignment, question), found in sorted(self.questions.items())
-                if found.number >= HIDDEN_BELOW
-            },
-        }
-
-
-def _without_few(notes: Mapping[str, int]) -> dict[str, Json]:
-    kept: dict[str, Json] = {
-        what: count for what, count in sorted(notes.items()) if count >= HIDDEN_BELOW
-    }
-    others = sum(notes.values()) - sum(notes[what] for what in kept)
-    return {**kept, "others": others} if others >= HIDDEN_BELOW else kept
+                rest = (earned - mark.points) / (worth - mark.worth)
+                question.shares.append((round(share, 9), round(rest, 9)))
