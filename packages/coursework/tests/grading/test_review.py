@@ -278,7 +278,6 @@ def test_hints_are_for_a_person_and_no_marks(out):
     }
     hints = [(student, text) for one in served.clusters.values() for student, text in one.hints]
     assert ("copies", "the same unusual wrong answer as 1 other") in hints
-    assert ("pokes", "the notebook opened /etc/passwd") in hints
     assert "right" not in said
     assert {record.student: record.points for record in served.records}["copies"] == 5
 

@@ -407,26 +407,6 @@ def test_cells_run_as_in_jupyter(sandbox, cells):
     assert result["answers"]["q"].get("plain") == integer(13), result["cells"]
 
 
-@pytest.mark.parametrize(
-    "source, hint",
-    [
-        ("import socket\nsocket.create_connection(('192.0.2.1', 80), 1)", "tried to use a network"),
-        (
-            "import urllib.request\nurllib.request.urlopen('https://uni.example/')",
-            "tried to use a network",
-        ),
-        ("import asyncio\nasyncio.new_event_loop()", None),  # a pair of sockets that leads nowhere
-        ("import coursework\ncoursework.check = check = print", "replaced the check"),
-        ("import os\nos.system('ls')", "started a program"),
-        ("open('/etc/passwd')", "opened /etc/passwd"),
-        ("check('other', 1)", None),
-    ],
-)
-def test_what_an_exercise_does_not_need_is_a_hint(sandbox, source, hint):
-    tried = sandbox.run(notebook(source, questions={"q": None}))["tried"]
-    assert tried == ([hint] if hint else [])
-
-
 def test_files_beside_lead_nowhere(sandbox):
     """Names come from an archive and were looked at before; here they may be anything."""
     files = {

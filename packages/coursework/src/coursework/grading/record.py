@@ -220,8 +220,8 @@ class RunNotebook(AsJson):
     finished : bool
         Whether it came to its end.
     cells : tuple of Cell
-    notes, tried : tuple of str
-        What its student is told, and what it has no business with.
+    notes : tuple of str
+        What its student is told.
     beside : tuple of str
         Files that it was run with.
     unknown_questions : tuple of str
@@ -237,7 +237,6 @@ class RunNotebook(AsJson):
     finished: bool = True
     cells: tuple[Cell, ...] = ()
     notes: tuple[str, ...] = ()
-    tried: tuple[str, ...] = ()
     beside: tuple[str, ...] = ()
     unknown_questions: tuple[str, ...] = ()
     runs: int = 1

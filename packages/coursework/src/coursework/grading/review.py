@@ -370,8 +370,8 @@ TRIED = "unusual wrong answers that one other student also tried"
 def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) -> Hints:
     """What a person may want to look at, by student and question; never a mark.
 
-    Equal unusual wrong answers, also among those that were tried on the way, equal code that few
-    share, and what a notebook tried that no exercise needs.
+    Equal unusual wrong answers, also among those that were tried on the way, and equal code that
+    few share.
     """
     hints: Hints = defaultdict(list)
     few = max(2, int(FEW * len({record.student for record in records})))
@@ -403,10 +403,6 @@ def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) ->
                 said = f"{several} {what}" if several > 1 else ""
             if said and said not in hints[one, question]:
                 hints[one, question].append(said)
-    for record in records:
-        for said in dict.fromkeys(said for notebook in record.notebooks for said in notebook.tried):
-            for question in record.marks:
-                hints[record.student, question].append(f"the notebook {said}")
     return hints
 
 

@@ -12,7 +12,6 @@ A line is one of
                                           running
     {"answer": question, "from": "check" or "variable", "cell": i or null, "plain": data}
     {"answer": question, "from": ..., "cell": ..., "unreadable": text}
-    {"tried": text, "cell": i or null}    what a notebook has no business with: a hint for a person
     {"done": true}
     {"secret": question, "plain": data} or {"secret": question, "unreadable": text}
 
@@ -35,7 +34,6 @@ import re
 import resource
 import select
 import signal
-import socket
 import sys
 import threading
 import time
@@ -57,7 +55,6 @@ if TYPE_CHECKING:
 
 LONGEST_ERROR = 500
 WAIT_FOR_SECRET = 30  # seconds; whoever swallowed the records is not answered
-MOST_TRIED = 10  # hints of one notebook
 # Magics whose body is the student's code; the others are about the notebook and do nothing here.
 MAGICS_WITH_CODE = ("time", "capture", "prun")
 
@@ -68,39 +65,6 @@ PROMPT = "In ["  # pasted with its prompt a line may pass for an annotation
 TICK = 0.5  # seconds by the clock between two looks at whether a step waits
 #: Of a tick what waits spends less than this share.
 WAITING = 0.02
-#: Events of the interpreter that honest notebooks do not bring about, and what to say of them.
-SUSPICIOUS = {
-    "socket.__new__": "tried to use a network",
-    "socket.getaddrinfo": "tried to use a network",
-    "socket.connect": "tried to use a network",
-    "socket.bind": "opened a server",
-    "os.fork": "started a process",
-    "os.forkpty": "started a process",
-    "os.posix_spawn": "started a program",
-    "os.exec": "started a program",
-    "os.system": "started a program",
-    "subprocess.Popen": "started a program",
-    "os.kill": "sent a signal",
-    "os.killpg": "sent a signal",
-    "ctypes.string_at": "read memory by address",
-    "ctypes.dlopen": "loaded a system library",
-    "ctypes.dlsym": "made a system call directly",
-    "sys._getframe": "inspected the frames of its callers",
-    "sys._current_frames": "inspected the frames of its callers",
-    "gc.get_objects": "searched the memory",
-    "gc.get_referrers": "searched the memory",
-    "sys.settrace": "traced the grader",
-    "sys.setprofile": "traced the grader",
-    "code.__new__": "built a code object by hand",
-}
-
-
-#: How many frames above an event a cell is looked for: what a library opens or starts on its own is
-#: nobody's. A network is used by none on its own, and what uses one lies far below the cell that
-#: asks for it.
-DEPTH, DEPTH_OF_NETWORK = 6, 40
-
-
 #: The arguments of each call to a function, and whether lists in them become arrays.
 Calls = TypedDict("Calls", {"arguments": list[list[object]], "as": str})
 
@@ -229,8 +193,6 @@ class _Notebook:
         self.functions: dict[str, tuple[object, dict[str, object]]] = {}
         self.number: int | None = None
         self.loop: PipeEventLoop | None = None
-        self.tried: set[str] = set()
-        self.noticing = False
         self.limits = limits
         self.folder = folder
         self.encode = json.JSONEncoder(check_circular=False, allow_nan=False).encode
@@ -265,8 +227,6 @@ class _Notebook:
         for question, variable in self.job["variables"].items():
             if question not in self.answered and variable in self.names:
                 self.record(question, self.names[variable], "variable")
-        if getattr(self.package, "check", None) != self.check:
-            self.hint("replaced the check")
         self.emit({"done": True})
         self.call_secretly()
 
@@ -306,7 +266,7 @@ class _Notebook:
         self.names.update(get_ipython=lambda: shell, display=nothing, In={}, Out={})
         for name in OURS:
             sys.modules.pop(name, None)
-        package = self.package = types.ModuleType("coursework")
+        package = types.ModuleType("coursework")
         vars(package).update(
             dict.fromkeys(("hint", "progress", "student", "worked_solution"), nothing),
             check=self.check,
@@ -321,7 +281,6 @@ class _Notebook:
                     file.write(base64.b64decode(data))
         sys.argv = ["notebook"]
         sys.path.insert(0, self.folder)
-        sys.addaudithook(self.notice)
         warnings.resetwarnings()
         warnings.simplefilter("ignore")
 
@@ -399,56 +358,6 @@ class _Notebook:
     def calls(self, question: str) -> list[list[object]] | None:
         calls = self.job["calls"].get(question)
         return None if calls is None else arguments_of(calls)
-
-    def notice(self, event: str, arguments: tuple[object, ...]) -> None:
-        """Hear of what the interpreter is asked to do, and note what no exercise needs."""
-        if self.noticing or (event != "open" and event not in SUSPICIOUS):
-            return
-        self.noticing = True  # what is done here is no event of the notebook's
-        try:
-            self.note_event(event, arguments)
-        finally:
-            self.noticing = False
-
-    def note_event(self, event: str, arguments: tuple[object, ...]) -> None:
-        if event == "open":
-            path, _, _ = arguments
-            if not isinstance(path, str) or not self.is_elsewhere(path):
-                return
-            said = f"opened {path[:100]}"
-        elif event == "socket.__new__" and arguments[1] not in (socket.AF_INET, socket.AF_INET6):
-            return  # such as the pair through which an event loop wakes itself up
-        elif self.is_from_a_cell(DEPTH_OF_NETWORK if event.startswith("socket.") else DEPTH):
-            said = SUSPICIOUS[event]
-        else:
-            return
-        self.hint(said)
-
-    def hint(self, said: str) -> None:
-        """Note once what a person may want to know."""
-        if said not in self.tried and len(self.tried) < MOST_TRIED:
-            self.tried.add(said)
-            self.emit({"tried": said, "cell": self.cell})
-
-    def is_elsewhere(self, path: str) -> bool:
-        """Whether a file is none of the notebook's own and none of Python's."""
-        if not os.path.isabs(path):
-            return ".." in path.split("/") and self.is_from_a_cell()
-        if path.startswith(
-            (self.folder, "/dev/", sys.prefix, sys.base_prefix, "/usr/share/zoneinfo")
-        ):
-            return False
-        return self.is_from_a_cell()
-
-    def is_from_a_cell(self, most: int = DEPTH) -> bool:
-        """Whether the code of a cell asks for it itself, and no library on its behalf."""
-        frame: types.FrameType | None = sys._getframe(2)
-        depth = 0
-        while frame is not None and depth < most:
-            if frame.f_code.co_filename.startswith("<cell "):
-                return True
-            frame, depth = frame.f_back, depth + 1
-        return False
 
     # -- one step: a cell, or the reading of an answer
 

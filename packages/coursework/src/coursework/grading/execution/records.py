@@ -30,7 +30,6 @@ Record = TypedDict(
         "error": str,
         "line": int,
         "threads": bool,
-        "tried": str,
         "answer": str,
         "secret": str,
         "plain": Plain,
@@ -90,8 +89,6 @@ class Records:
             return record["done"] is True
         if keys == {"begin"}:
             return self.is_step(record["begin"])
-        if keys == {"tried", "cell"}:
-            return is_text(record["tried"], LONGEST_NAME) and self.is_cell(record["cell"])
         if keys in ({"secret", "plain"}, {"secret", "unreadable"}):
             if "plain" in keys:
                 read_plain(record["plain"])

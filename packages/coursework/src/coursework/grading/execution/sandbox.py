@@ -448,7 +448,6 @@ class _Run:
         self.number_of_runs = 0
         self.damaged = 0
         self.unknown: dict[str, bool] = {}
-        self.tried: dict[str, bool] = {}
         self.notes: list[str] = []
         if not isinstance(job["id"], str) or not all(
             isinstance(cell["source"], str) for cell in job["cells"]
@@ -473,7 +472,6 @@ class _Run:
             },
             "unknown questions": written(list(self.unknown)[:MOST_UNKNOWN]),
             "notes": [*self.notes],
-            "tried": [*self.tried],
             "runs": self.number_of_runs,
             "seed": self.job.get("seed", 0),
             "isolation": self.sandbox.isolation_in_force().as_json(),
@@ -515,7 +513,6 @@ class _Run:
                 index: cell for index, cell in once.cells.items() if ["cell", index] not in skip
             }
             self.unknown |= once.unknown
-            self.tried |= once.tried
             for question, answer in once.answers.items():
                 if answer.plain is not None or answers.get(question, MISSING).outcome != "recorded":
                     answers[question] = answer
@@ -593,7 +590,6 @@ class _Once:
         self.questions = job["questions"]
         self.answers: dict[str, Answer] = {}
         self.unknown: dict[str, bool] = {}
-        self.tried: dict[str, bool] = {}
         self.left_threads: list[int] = []
         self.finished = False
         self.done_by = math.inf
@@ -725,10 +721,7 @@ class _Once:
             ):
                 # it knows the secret calls now: nothing that it says of anything else is heard
                 return
-        if "tried" in record:
-            if len(self.tried) < MOST_UNKNOWN:
-                self.tried[record["tried"]] = True
-        elif "begin" in record:
+        if "begin" in record:
             step = record["begin"]
             wall = (
                 self.limits.cell_wall_seconds

@@ -465,7 +465,6 @@ def _oddities(record: Record) -> dict[str, None]:
     found: dict[str, None] = {}
     for notebook in record.notebooks:
         found.update(dict.fromkeys(notebook.notes))
-        found.update(dict.fromkeys(f"its code {said}" for said in notebook.tried))
         if notebook.unknown_questions:
             found["it checks an answer to a question that is not in the assignment"] = None
         outcomes = sorted({cell.outcome for cell in notebook.cells} - {"done", "not run", "error"})
