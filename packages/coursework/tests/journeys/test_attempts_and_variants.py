@@ -1,4 +1,4 @@
-"""A student hands in several times, or by an archive whose variants the source has no more."""
+"""What stands when a source changes: the page of moves, and variants that it has no more."""
 
 import hashlib
 
@@ -10,9 +10,6 @@ pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 TERM = """
 time-zone = "UTC"
 roster = "../roster.csv"
-attempts = "best"
-[late]
-a-day = 0.2
 [assignments.hw1]
 due = 2025-10-05T23:59:00
 """
@@ -27,70 +24,8 @@ def course(tmp_path):
     return course
 
 
-EARLY, LATER, LATE = (
-    f"101-7 - Ada Lee - Oct {day}, 2025 1000 AM" for day in (1, 5, 6)
-)  # Brightspace's names
-
-
-def test_the_best_attempt_counts_and_everybody_is_told(course):
-    course.hands_in(EARLY, "hw1", why=None)
-    course.grade()
-    assert course.points() == {"ada": 8}
-    # First a worse attempt, then a late but correct one, worth 8 of 10.
-    course.hands_in(LATER, "hw1", arm=3, why=None)
-    said = course.grade()
-    assert "DOES NOT COUNT: unless it is the best of 2 attempts" in said
-    assert course.points() == {"ada": 8}
-    said = course.run("why", "ada", "hw1")
-    assert f"  counts: {EARLY}/hw1.ipynb" in said
-    assert (
-        f"does not count: {LATER}/hw1.ipynb, since it comes to 4 points, and another to 8" in said
-    )
-    page = (course.marks / "feedback" / "ada" / "hw1.html").read_text()
-    assert "was not counted: it comes to 4 points, and another to 8" in page
-    assert "handed in more than once" in (course.marks / "report.html").read_text()
-    # Nothing is run a second time.
-    assert "2 of them graded before" in course.grade()
-
-
-def test_another_attempt_may_be_the_best_once_a_question_was_mended(course):
-    course.hands_in(EARLY, "hw1", why=None)
-    course.hands_in(LATER, "hw1", arm=3, why=None)
-    course.grade()
-    course.change("hw1", sum=(6, 4), arm=(3, 4))
-    said = course.regrade(fails=True)
-    assert "'ada', hw1: 8 -> 4  (hw1/sum; another attempt is now the best)" in said
-    assert course.points() == {"ada": 8}
-    course.regrade("--yes")
-    assert course.points() == {"ada": 4}
-    assert f"  counts: {LATER}/hw1.ipynb" in course.run("why", "ada", "hw1")
-    assert "Marks changed: 0." in course.regrade()
-    assert "2 of them graded before" in course.grade()
-
-
-def test_an_attempt_that_may_yet_be_the_best_is_judged_by_a_person(course):
-    course.hands_in(EARLY, "hw1", arm=3, why="The sum of the moments.")
-    course.hands_in(LATER, "hw1", why=None, sum=4)
-    course.grade()
-    (line,) = course.table("undecided.csv")
-    assert line["question"] == "hw1/why" and course.points() == {"ada": 4}
-    path = course.write_table("decided.csv", [{**line, "credit": "1"}])
-    course.run("merge", "marks", path, "--grader", "Ann")
-    assert course.points() == {"ada": 6}
-
-
-def test_lateness_is_part_of_what_an_attempt_comes_to(course):
-    course.hands_in(EARLY, "hw1", arm=3, why=None)
-    course.hands_in(LATE, "hw1", why=None)
-    course.grade()
-    # 8 points less a fifth are more than 4.
-    assert course.points() == {"ada": 8}
-    said = course.run("why", "ada", "hw1")
-    assert "late: 20 % lost" in said and "it comes to 4 points, and another to 6.4" in said
-
-
 def test_the_page_of_moves_is_there_when_it_is_named(course):
-    course.hands_in(EARLY, "hw1", why=None)
+    course.hands_in("ada", "hw1", why=None)
     course.grade()
     course.change("hw1", sum=(6, 4))
     (line,) = [

@@ -85,10 +85,7 @@ class Story:
         self.said = {}  # the machine's latest mark, and the answer it was for
         self.given, self.graded = {}, {}  # the marks, and the attempt that they are of
         self.policies = {"never-lower": set(), "full-credit": set(), "void": set()}
-        self.which = self.dice.choice(["newest in time", "newest in time", "last", "best"])
-        if self.which == "best":
-            del self.policies["never-lower"]  # what an attempt that never counted had is not given
-        self.among = {}  # the attempts of which one counted
+        self.which = self.dice.choice(["newest in time", "newest in time", "last"])
         self.full = {}  # the question as it was graded last with all variants
         self.extended, self.cells, self.by_hand = {}, {}, set()
         self.tables, self.events = [], []
@@ -217,24 +214,17 @@ class Story:
     # -- what must come of it
 
     def counting(self, worker, name):
-        """The attempts of which one counts, the newest in time first."""
+        """The attempt that counts."""
 
         def rank(attempt):
             in_time = self.which == "last" or self.hours_late(worker, name, attempt) <= 0
             return (not attempt.is_blank, in_time, attempt.when)
 
-        first, *others = sorted(self.attempts[worker, name], key=rank, reverse=True)
-        return [first, *(one for one in others if self.which == "best" and not one.is_blank)]
+        return max(self.attempts[worker, name], key=rank)
 
     def lost(self, worker, name, attempt):
         late = self.hours_late(worker, name, attempt)
         return 0 if late <= 0 else 1 if late > 240 else min(0.5, 0.1 * -(-late // 24))
-
-    def comes_to(self, worker, name, attempt, marks):
-        """What an attempt earns, or may yet, lateness included."""
-        excused = self.extended.get(((MEMBERS[0] if worker == TEAM else worker), name)) == "excused"
-        points = sum(points + waits * worth for points, worth, waits in marks.values())
-        return round(points * (1 - (0 if excused else self.lost(worker, name, attempt))), 4)
 
     def hours_late(self, worker, name, attempt):
         more = [
@@ -256,9 +246,7 @@ class Story:
             load = worth = 0
         elif weight not in asked.weights and name in self.policies["full-credit"]:
             load = worth
-        elif (
-            name in self.policies.get("never-lower", ()) and before and before[0] == answers["load"]
-        ):
+        elif name in self.policies["never-lower"] and before and before[0] == answers["load"]:
             load = max(load, before[1] / before[2] * worth if before[2] else 0)
         return {
             "load": (load, worth, False),
@@ -275,12 +263,10 @@ class Story:
             found[question] = (points, worth, waits)
         return found
 
-    def settle(self, key, attempts, yes):
+    def settle(self, key, attempt, yes):
         """Give marks: what was given moves only with a yes."""
-        marks = [self.with_decisions(*key, one.answers, one.machine) for one in attempts]
-        value = lambda pair: (self.comes_to(*key, *pair), pair[0].when)  # noqa: E731
-        attempt, new = max(zip(attempts, marks, strict=True), key=value)
         answers, machine, old = attempt.answers, attempt.machine, self.given.get(key)
+        new = self.with_decisions(*key, answers, machine)
         moves = old and any(
             not old[question][2] and (old[question][:2] != new[question][:2] or new[question][2])
             for question in QUESTIONS
@@ -292,7 +278,7 @@ class Story:
             self.last_asked[key] = (asked.times, asked.worth)
         elif old is None:
             self.last_asked[key] = self.full[key[1]]
-        self.given[key], self.graded[key], self.among[key] = new, attempt, attempts
+        self.given[key], self.graded[key] = new, attempt
         for question, (points, worth, _) in machine.items():
             self.said[(*key, question)] = (answers[question], points, worth)
 
@@ -303,8 +289,8 @@ class Story:
         self.saw(name)
         for worker in WORKERS:
             if (worker, name) in self.attempts:
-                attempts = [self.snapshot(worker, name, one) for one in self.counting(worker, name)]
-                self.settle((worker, name), attempts, yes)
+                attempt = self.snapshot(worker, name, self.counting(worker, name))
+                self.settle((worker, name), attempt, yes)
 
     def saw(self, name):
         """The class was graded by the question as it is now."""
@@ -324,12 +310,9 @@ class Story:
         self.run("regrade", *words, crash=crash)
         for name in {name for _, name in self.graded}:
             self.saw(name)
-        for key, attempts in list(self.among.items()):
-            again = [
-                SimpleNamespace(**vars(one) | {"machine": self.machine(*key, one.answers)})
-                for one in attempts
-            ]
-            self.settle(key, again, yes)
+        for key, one in list(self.graded.items()):
+            machine = self.machine(*key, one.answers)
+            self.settle(key, SimpleNamespace(**vars(one) | {"machine": machine}), yes)
 
     def merge(self, file, who, yes, crash=None):
         words = ["merge", self.place / "marks", file, "--grader", who, *yes]
@@ -338,8 +321,8 @@ class Story:
         return text
 
     def bring_in(self, yes):
-        for key, attempts in list(self.among.items()):
-            self.settle(key, attempts, yes)
+        for key, attempt in list(self.graded.items()):
+            self.settle(key, attempt, yes)
 
     def check(self):
         """Every mark that was given is the one that the story says."""
@@ -425,7 +408,7 @@ class Story:
         """A cell more, and nothing else, in a notebook that was handed in."""
         if self.attempts:
             key = self.somebody(self.attempts)
-            attempt, *_ = self.counting(*key)
+            attempt = self.counting(*key)
             attempt.comments.append("# what I thought")
             if not attempt.is_blank:
                 self.write_notebook(*key, attempt)

@@ -10,12 +10,10 @@ killed goes on where it was.
 from __future__ import annotations
 
 import contextlib
-import datetime
 import functools
-import itertools
 import platform
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TextIO
@@ -29,7 +27,7 @@ from .judging.contract import Asked
 from .judging.journal import Given, Journal, Standing, appeals_open, with_decisions
 from .judging.judge import Judge
 from .judging.laboratory import PAGE, Agree, Laboratory, settle
-from .judging.term import BEST, result_of, term_of
+from .judging.term import term_of
 from .pairing import (
     HandedIn,
     Work,
@@ -41,12 +39,12 @@ from .pairing import (
     say,
     say_other_numbers,
 )
-from .record import Case, Isolation, Record, Result, Superseded
+from .record import Case, Isolation, Record, Result
 from .running import Finished, Jobs, Progress, Running, key_of, record_of, run
 from .store import REFUSED, Store, as_text, write
 from .submissions.intake import Refused
 from .submissions.roster import BadRoster
-from .tables import in_a_line, number, number_of
+from .tables import in_a_line, number_of
 
 #: What moves marks, where it is not work that was handed in anew.
 REJUDGED = "the questions or the software have changed"
@@ -70,8 +68,6 @@ class Desk:
         self.store, self.show, self.agree = store, show or sys.stderr, agree
         self.term, self.contracts = term_of(store.folder), Contracts(store.folder)
         self.journal = Journal(store.folder)
-        #: Those of whose the best counts, as they are judged now.
-        self.attempts: list[Record] = []
         self.tell(self.journal.said_of_cut())
 
     @functools.cached_property
@@ -136,50 +132,6 @@ class Desk:
             cases[name] = replace(case, own=judged)
         return with_decisions(replace(record, cases=cases, marks=marks), self.standing)
 
-    def candidate(self, record: Record, judged: Callable[[Record], Record]) -> Record:
-        """What becomes of a record, and where the best of several attempts counts, of the others:
-        another may be the best by now.
-        """
-        handed_in = {one.sha256 for one in record.notebooks} | {
-            one.sha256 for one in record.superseded
-        }
-        attempts = [
-            one
-            for one in self.store.attempts(record.student, record.assignment).values()
-            if handed_in.issuperset(notebook.sha256 for notebook in one.notebooks)
-        ]
-        if self.term.attempts != BEST or len(attempts) < 2:
-            return judged(record)
-        return self.best([judged(one) for one in attempts])
-
-    def best(self, attempts: Sequence[Record]) -> Record:
-        """The attempt that comes to most, or may yet, lateness included; it says why the others do
-        not count.
-        """
-        self.attempts += attempts
-        now = datetime.datetime.now(datetime.UTC)
-        (member, *_) = self.term.members(attempts[0].student)
-
-        def comes_to(record: Record) -> tuple[float, list[tuple[str, str]]]:
-            result = result_of(member, record.assignment, record, self.term, {}, now)
-            waits = sum(one.worth for one in record.marks.values() if one.outcome == "undecided")
-            newest = [(one.handed_in or "", one.file) for one in record.notebooks]
-            return round((record.points + waits) * (1 - result.penalty), 4), newest
-
-        best, *others = sorted(attempts, key=comes_to, reverse=True)
-        most = number(comes_to(best)[0])
-        superseded = [
-            Superseded(
-                notebook.file,
-                notebook.sha256,
-                f"it comes to {number(comes_to(one)[0])} points, and another to {most}",
-                comes_to_less=True,
-            )
-            for one in others
-            for notebook in one.notebooks
-        ]
-        return replace(best, superseded=(*best.superseded, *superseded))
-
     # -- all
 
     def settle(self, candidates: Iterable[Record], why: str, dry_run: bool = False) -> Laboratory:
@@ -193,9 +145,6 @@ class Desk:
         laboratory = settle(self.store, self.journal, candidates, agree, why, dry_run)
         if not laboratory.moves and (self.store.folder / PAGE).exists():
             reports.write_moves(laboratory, self.store.folder)
-        if laboratory.agreed and not dry_run:
-            for attempt in self.attempts:
-                self.store.keep_attempt(attempt)
         return laboratory
 
     def report(self, course: Course | None = None) -> None:
@@ -320,18 +269,11 @@ def _read_and_pair(desk: Desk, course: Course, place: Path, student: str | None)
 
 def _is_done(store: Store, one: Work, key: str) -> bool:
     """Whether it has a record; a notebook that this machine could not run is tried again."""
-    counted = store.read(*one.key)
-    records = [counted, store.staged(*one.key)]
-    if one.attempts > 1:
-        records = [store.attempts(*one.key).get(key)]
-        if not records[0] and counted and counted.key == key:
-            store.keep_attempt(counted)
-            records = [counted]
     return any(
         record is not None
         and record.key == key
         and not any(notebook.isolation.given_up is not None for notebook in record.notebooks)
-        for record in records
+        for record in (store.read(*one.key), store.staged(*one.key))
     )
 
 
@@ -348,8 +290,7 @@ def _run_and_judge(desk: Desk, waiting: Sequence[Work], running: Running) -> Non
         record = replace(
             record, cases={name: answered(case, own[name]) for name, case in cases.items()}
         )
-        record = desk.marked(with_marks_of(store.read(*one.key), record))
-        (store.keep_attempt if one.attempts > 1 else store.stage)(record)
+        store.stage(desk.marked(with_marks_of(store.read(*one.key), record)))
         return order, record.notebooks[0].isolation.as_json()
 
     jobs = Jobs(waiting, lambda one: desk.asked(one)[0], store)
@@ -363,22 +304,18 @@ def _candidates(
 ) -> Iterator[Record]:
     """All records of these assignments, as they would be now."""
     store, run_now = desk.store, {one.key for one in waiting}
-    for of, group in itertools.groupby(keys, key=lambda entry: entry[0].key):
-        wanted = [key for _, key in group]
-        old, staged = store.read(*of), store.staged(*of)
-        if len(wanted) > 1:
-            attempts = store.attempts(*of)
-            yield desk.best([desk.marked(attempts[key]) for key in wanted])
-        elif of in run_now and staged:
+    for one, key in keys:
+        old, staged = store.read(*one.key), store.staged(*one.key)
+        if one.key in run_now and staged:
             yield staged
-        elif old and old.key in wanted:
+        elif old and old.key == key:
             yield desk.marked(old)
-        elif staged and staged.key in wanted:
+        elif staged and staged.key == key:
             yield desk.marked(with_marks_of(old, staged))
     here = {one.key for one, _ in keys}
     for record in store.all():
         if (record.student, record.assignment) not in here and record.assignment in desk.questions:
-            yield desk.candidate(record, desk.marked)
+            yield desk.marked(record)
 
 
 def _keep_refused(store: Store, place: Path, refused: Iterable[Refused]) -> None:
@@ -467,7 +404,7 @@ def regrade(
             raise NothingToGrade(f"There are no records in {desk.store.folder}.")
         course = Course(solutions, desk.term, names)
         desk.ask(course, names, closing)
-        candidates = (desk.candidate(record, desk.marked) for record in desk.store.all())
+        candidates = (desk.marked(record) for record in desk.store.all())
         laboratory = desk.settle(candidates, REJUDGED, dry_run)
         if not dry_run and laboratory.agreed:
             desk.report(course)
@@ -479,11 +416,7 @@ def bring_in_decisions(
 ) -> Laboratory:
     """Bring what people decided into marks and pages; nothing is judged anew."""
     with at_desk(out, show, agree) as (desk, _):
-
-        def decided(record: Record) -> Record:
-            return with_decisions(record, desk.standing)
-
-        candidates = (desk.candidate(record, decided) for record in desk.store.all())
+        candidates = (with_decisions(record, desk.standing) for record in desk.store.all())
         laboratory = desk.settle(candidates, DECIDED)
         desk.report()
     return laboratory

@@ -14,7 +14,7 @@ from ..checking.identity import plain_identity
 from .assignments import Course, NothingToGrade, Questions
 from .judging.journal import FILE as JOURNAL
 from .judging.journal import Journal
-from .judging.term import BEST, IN_TIME, Term
+from .judging.term import LAST, Term
 from .store import Store, write
 from .submissions import intake
 from .submissions.intake import Notebook, Refused
@@ -39,8 +39,6 @@ class Work(NamedTuple):
         Why each of these does not.
     numbers : str
         Whose numbers it answers: of a group, those of the member whom it names.
-    attempts : int
-        Of how many attempts this is one, where the best counts.
     """
 
     student: str
@@ -49,7 +47,6 @@ class Work(NamedTuple):
     superseded: list[Notebook]
     why: list[str]
     numbers: str
-    attempts: int = 1
 
     @property
     def key(self) -> tuple[str, str]:
@@ -125,8 +122,7 @@ def pair(
 
     Of several notebooks for one assignment that counts which the term says, and another one only
     for questions that it has not: an assignment may be handed in as several notebooks. What answers
-    nothing never counts where another notebook answers something. Where the best attempt counts,
-    each is work of its own until all are judged.
+    nothing never counts where another notebook answers something.
     """
     refused, left_alone = list(refused), Counter[str]()
     handed_in: dict[tuple[str, str], list[Notebook]] = {}
@@ -142,40 +138,36 @@ def pair(
             group = term.group_of(notebook.student)
             handed_in.setdefault((group, assignment), []).append(notebook)
     work = [
-        attempt
+        _work_of(student, assignment, mine, course, term)
         for (student, assignment), mine in sorted(handed_in.items(), key=lambda entry: entry[0])
-        for attempt in _attempts(student, assignment, mine, course, term)
     ]
     return HandedIn(work, refused, left_alone)
 
 
-def _attempts(
+def _work_of(
     student: str, assignment: str, mine: Sequence[Notebook], course: Course, term: Term
-) -> Iterator[Work]:
-    """The attempt that counts, or where the best of them does, all."""
-    wants_in_time, several = term.attempts in (IN_TIME, BEST), len(mine) > 1
+) -> Work:
+    """The notebooks that count, and the others, each with the reason."""
+    several = len(mine) > 1
     ranks = {
         notebook.file: (
             not several or course.answers_something(notebook),
-            not (wants_in_time and term.is_late(student, assignment, notebook)),
+            term.attempts == LAST or not term.is_late(student, assignment, notebook),
         )
         for notebook in mine
     }
     answers_most, in_time_most = max(ranks.values())
-    attempts: list[list[Notebook]] = []
+    counting: list[Notebook] = []
     superseded: list[Notebook] = []
     why: list[str] = []
     taken: set[str] = set()
     for notebook in sorted(mine, key=lambda one: (ranks[one.file], by_age(one)), reverse=True):
         names = set(notebook.named) & set(course.names[assignment])
-        answers, in_time = ranks[notebook.file]
-        if attempts and names and not names & taken:
-            attempts[-1].append(notebook)
+        if not counting or (names and not names & taken):
+            counting.append(notebook)
             taken |= names
-        elif not attempts or (term.attempts == BEST and answers):
-            attempts.append([notebook])
-            taken = set(names)
         else:
+            answers, in_time = ranks[notebook.file]
             reasons = (
                 "it answers nothing" if answers_most and not answers else "",
                 "it was late, and another was on time" if in_time_most and not in_time else "",
@@ -184,10 +176,9 @@ def _attempts(
             superseded.append(notebook)
             why.append(next(filter(None, reasons)))
     members = {plain_identity(name): name for name in (student, *term.members(student))}
-    for counting in attempts:
-        says = [members.get(plain_identity(notebook.says), student) for notebook in counting]
-        counting.sort(key=lambda notebook: notebook.file)
-        yield Work(student, assignment, counting, superseded, why, says[0], len(attempts))
+    says = [members.get(plain_identity(notebook.says), student) for notebook in counting]
+    counting.sort(key=lambda notebook: notebook.file)
+    return Work(student, assignment, counting, superseded, why, says[0])
 
 
 # --- what a person is told before anything is run -------------------------------------------------
@@ -218,10 +209,8 @@ def say(
 def _say_whose(handed_in: HandedIn, folder: Path, show: TextIO) -> None:
     rows: dict[tuple[str, ...], None] = {}
     for one in handed_in.work:
-        unless = f"unless it is the best of {one.attempts} attempts" if one.attempts > 1 else ""
-        for notebook, why in zip(
-            (*one.notebooks, *one.superseded), (*((unless,) * len(one.notebooks)), *one.why)
-        ):
+        reasons = (*[""] * len(one.notebooks), *one.why)
+        for notebook, why in zip((*one.notebooks, *one.superseded), reasons):
             known = notebook.matched, notebook.says, why
             rows[one.student, one.assignment, notebook.file, *known] = None
     header = ("student", "assignment", "file", "known by", "says it is of", "does not count")
@@ -379,9 +368,7 @@ def demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | N
         if not notebook.claim.given_by_system
     ]
     students = {one.student for one in work}
-    several = len(students) == 1 and any(
-        one.attempts > 1 or notebook in one.superseded for one, notebook in by_name
-    )
+    several = len(students) == 1 and any(notebook in one.superseded for one, notebook in by_name)
     of_notebooks = {
         one.student
         for one, notebook in by_name

@@ -254,14 +254,11 @@ class Superseded(AsJson):
     ----------
     file, sha256 : str
     why : str
-    comes_to_less : bool
-        Whether it was run and judged as well, and another attempt is better.
     """
 
     file: str
     sha256: str
     why: str = ""
-    comes_to_less: bool = False
 
 
 @dataclass(frozen=True)

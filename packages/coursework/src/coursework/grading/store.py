@@ -95,22 +95,6 @@ class Store:
         place.parent.mkdir(parents=True, exist_ok=True)
         os.replace(self._staged(student, assignment), place)
 
-    # Where the best of several attempts counts, each is kept as it was judged.
-
-    def _attempts(self, student: str, assignment: str) -> Path:
-        place = self.place(student, assignment).relative_to(self.records)
-        return self.folder / "attempts" / place.with_suffix("")
-
-    def keep_attempt(self, record: Record) -> None:
-        """Keep an attempt as it was judged."""
-        place = self._attempts(record.student, record.assignment)
-        write(place / f"{record.key[:20]}.json", _as_json(record))
-
-    def attempts(self, student: str, assignment: str) -> dict[str, Record]:
-        """The attempts that were kept, by their keys."""
-        paths = sorted(self._attempts(student, assignment).glob("*.json"))
-        return {one.key: one for one in map(record_in, paths)}
-
     def keep_work(self, digest: str, sources: list[str]) -> None:
         """Keep the code of a notebook, for people to look at beside its answers."""
         self._keep_beside(f"{digest}.json", sources)

@@ -339,9 +339,7 @@ def _given(record: Record, before: Given | None, why: str, who: str) -> Given:
     if before is None:
         why = "graded"
     elif sorted(before.files.values()) != sorted(files.values()):
-        beaten = {one.sha256 for one in record.superseded if one.comes_to_less}
-        all_beaten = beaten.issuperset(before.files.values())
-        why = "another attempt is now the best" if all_beaten else "handed in again"
+        why = "handed in again"
     else:
         moved = [
             record.marks[name] for name, part in marks.items() if before.marks.get(name) != part

@@ -31,7 +31,7 @@ EXCUSED = "excused"
 #: The state of an assignment for a student whose only file cannot be graded: a person has to look.
 DAMAGED = "damaged"
 #: Which of several attempts counts; never one that answers nothing where another answers something.
-IN_TIME, BEST, LAST = "newest in time", "best", "last"
+IN_TIME, LAST = "newest in time", "last"
 #: What tables of systems call the time at which something was handed in.
 TIMES = (
     "last modified (submission)",
@@ -374,9 +374,8 @@ time-zone = {zone}  # of the times below
 # exports. Without a roster, the names of the folders are the students.
 {roster}
 
-# Which of several attempts counts: "newest in time" (a late one only if none came in time), "last",
-# or "best" (all are graded, and the one with the most points counts, after any deduction for
-# lateness). A blank attempt never counts if another one answers something.
+# Which of several attempts counts: "newest in time" (a late one only if none came in time) or
+# "last". A blank attempt never counts if another one answers something.
 attempts = "newest in time"
 
 [late]
@@ -498,8 +497,8 @@ def read_term(path: str | Path) -> Term:
         raise file.bad("", "time-zone is missing, such as time-zone = 'Europe/Amsterdam'.")
     if not term.assignments:
         raise file.bad("assignments", "it has no assignment, such as [assignments.hw1].")
-    if term.attempts not in (IN_TIME, BEST, LAST):
-        known = f"{IN_TIME!r}, {BEST!r} or {LAST!r}"
+    if term.attempts not in (IN_TIME, LAST):
+        known = f"{IN_TIME!r} or {LAST!r}"
         raise file.bad("attempts", f"attempts must be {known}, not {term.attempts!r}.")
     _demand_order(file, term)
     _demand_one_rule(file, term)
