@@ -22,7 +22,6 @@ import json
 import os
 import re
 import stat
-import struct
 import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -39,7 +38,7 @@ from .pictures import JPEG, PNG, is_picture
 from .roster import Roster
 
 if TYPE_CHECKING:
-    from _typeshed import WriteableBuffer
+    pass
 
 #: Gives the bytes of a file.
 Read = Callable[[], bytes]
@@ -277,10 +276,9 @@ def take_in(
         else:
             _take(found, others, refused, layout, name, when, read, name)
     have = {one.claim.source for one in found}
-    found.reverse()
     notebooks: list[Notebook] = []
-    while found:  # one by one: of a large class a second list is felt
-        if one := _with_student(found.pop(), roster, student, refused):
+    for submitted in found:
+        if one := _with_student(submitted, roster, student, refused):
             beside, handed_in = _beside(one, others), _when(one, others, layout)
             notebooks.append(one._replace(beside=beside, handed_in=handed_in))
     notebooks = _without_conflicts(notebooks, roster, refused)
@@ -394,7 +392,7 @@ def _take(
             Identity(),
             "",
             hashlib.sha256(data).hexdigest(),
-            _shared_names(tuple(named)),
+            named,
             PurePosixPath(name).parent.name,
             (claim.declared, when),
             claim.late,
@@ -415,14 +413,6 @@ def _says(cells: Iterable[CodeCell]) -> str:
         if found["who"].strip()
     ]
     return said[-1] if said else ""
-
-
-@functools.lru_cache(1_000)
-def _shared_names(names: tuple[str, ...]) -> list[str]:
-    """The same list for all that name the same questions: of a hundred
-    thousand notebooks nearly all do.
-    """
-    return list(names)
 
 
 def _with_student(
@@ -669,55 +659,18 @@ def _no_more_than(data: bytes) -> bytes:
     return data
 
 
-class _OwnPlace(io.RawIOBase):
-    """A file that is read from a place of its own: a copy of this process reads it
-    too, and does not move this one.
-    """
-
-    def __init__(self, path: str) -> None:
-        self.handle, self.place = os.open(path, os.O_RDONLY | os.O_CLOEXEC), 0
-
-    def readable(self) -> bool:
-        return True
-
-    seekable = readable
-
-    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        start = {
-            os.SEEK_SET: 0,
-            os.SEEK_CUR: self.place,
-            os.SEEK_END: os.fstat(self.handle).st_size,
-        }[whence]
-        self.place = start + offset
-        return self.place
-
-    def readinto(self, buffer: "WriteableBuffer") -> int:
-        number = os.preadv(self.handle, [buffer], self.place)
-        self.place += number
-        return number
-
-    def close(self) -> None:
-        if not self.closed:
-            os.close(self.handle)
-        super().close()
-
-
 def _files_of_archive(path: str, refused: list[Refused], repositories: set[str]) -> Iterator[Found]:
+    path = os.path.abspath(path)
+    _archive.cache_clear()  # another archive may have come to the same place
     try:
-        archive = zipfile.ZipFile(_OwnPlace(path))
+        entries = sorted(_archive(path, os.getpid()).infolist(), key=lambda one: one.filename)
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
         raise Unfit(f"{path} is not a zip archive, or it is damaged ({error}).") from None
-    entries = sorted(archive.infolist(), key=lambda entry: entry.filename, reverse=True)
     repeated = {
         one.filename for one, other in itertools.pairwise(entries) if one.filename == other.filename
     }
-    # What the archive knows of each is let go one by one: of a hundred
-    # thousand it would be half of the memory.
-    archive.filelist.clear()
-    archive.NameToInfo.clear()
     unpacked = 0
-    while entries:
-        entry = entries.pop()
+    for entry in entries:
         name = entry.filename
         shown = name.encode("utf8", "backslashreplace").decode("utf8")
         if "/.git/" in name:
@@ -736,36 +689,17 @@ def _files_of_archive(path: str, refused: list[Refused], repositories: set[str])
         if why:
             refused.append(Refused(shown, "", why))
         else:
-            yield name if shown == name else shown, entry.date_time, _Entry(archive, entry)
+            yield shown, entry.date_time, functools.partial(_read_of_class, path, entry)
 
 
-class _Entry:
-    """A function that reads an entry of an archive: no more is kept of it than where it lies."""
+@functools.lru_cache(1)
+def _archive(path: str, process: int) -> zipfile.ZipFile:
+    """An archive as this process has it open: two that read from one place move each other's."""
+    return zipfile.ZipFile(path)
 
-    __slots__ = ("archive", "name", "place")
-    # By the last of these newer Pythons notice entries that overlap.
-    FIELDS = (
-        "header_offset",
-        "compress_size",
-        "file_size",
-        "CRC",
-        "compress_type",
-        "flag_bits",
-        "_end_offset",
-    )
-    LAYOUT = struct.Struct("<QQQLHHq")
 
-    def __init__(self, archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> None:
-        self.archive, self.name = archive, entry.orig_filename
-        values = (getattr(entry, field, None) for field in self.FIELDS)
-        self.place = self.LAYOUT.pack(*(-1 if value is None else value for value in values))
-
-    def __call__(self) -> bytes:
-        entry = zipfile.ZipInfo(self.name)
-        for field, value in zip(self.FIELDS, self.LAYOUT.unpack(self.place), strict=True):
-            if value >= 0:
-                setattr(entry, field, value)
-        return _read_entry(self.archive, entry)
+def _read_of_class(path: str, entry: zipfile.ZipInfo) -> bytes:
+    return _read_entry(_archive(path, os.getpid()), entry)
 
 
 def _why_not_unpacked(entry: zipfile.ZipInfo, name: str) -> str:
