@@ -1,10 +1,8 @@
 """What is said of an answer, to the letter, with lockers that are looked up without a slow hash."""
 
-import concurrent.futures
 import hashlib
 import json
 import math
-import threading
 from dataclasses import replace
 
 import pytest
@@ -265,19 +263,6 @@ def test_which_faults_of_the_form_no_right_value_makes_good(monkeypatch):
         assert reply_to(question, {}, [1, 2, 0.5]) == expected
         reply = reply_to(question, lockers, [1, 2, 0.5])
         assert reply == (expected if known else ("correct", ""))
-
-
-def test_slow_work_is_done_side_by_side_where_there_are_threads(monkeypatch):
-    together = threading.Barrier(2, timeout=5)
-    assert sorted(questions._each(lambda text: together.wait(), ["a", "b"])) == [0, 1]
-
-    class NoThreads(concurrent.futures.ThreadPoolExecutor):
-        def submit(self, *_, **__):
-            raise RuntimeError("can't start new thread")
-
-    monkeypatch.setattr(concurrent.futures, "ThreadPoolExecutor", NoThreads)
-    assert questions._each(str.upper, ["a", "b"]) == ["A", "B"]
-    assert questions._begun(lambda: "done")() == "done"
 
 
 # ---- slips, exams, persons ---------------------------------------------------------------------

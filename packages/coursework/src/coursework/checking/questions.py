@@ -11,13 +11,13 @@ import itertools
 import json
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import TypeVar, cast
+from typing import cast
 
 from . import sealing
 from .catalogue import by_short_name, message
@@ -69,7 +69,6 @@ SMALL, LARGE = 64, 1000
 MOST_LOOKED_AT = 16
 
 
-Some = TypeVar("Some")
 # A function that returns what is known of a fingerprint, or nothing.
 Find = Callable[[str], Locker | None]
 
@@ -429,7 +428,6 @@ def _compare(
     find: Find,
     for_others: Callable[[], bool] | None,
 ) -> Reply:
-    for_others = _begun(for_others) if for_others else None
     locker = find(fingerprint)
     known = _known_in(question, reading, locker)
     wrong_form = fault(question, reading) if known is None or known.outcome == "correct" else None
@@ -507,13 +505,9 @@ def _not_known(
     # Each search costs a slow hash: exact numbers were not rounded, and rounded ones are no known
     # mistake to the digit.
     precise, rounded = _precision(plain) if decimals else (True, False)
-    near = [fingerprint(question, reading, near=True)] if not precise else []
-    others = [] if rounded else list(other_readings(question, reading))
-    texts = near + [fingerprint(question, turned) for _, _, turned in others]
-    lockers = _each(find, texts)
     if for_others and for_others():
         return Reply(name, "wrong", OTHER_NUMBERS, [FOR_OTHERS])
-    if near and lockers.pop(0) is not None:
+    if not precise and find(fingerprint(question, reading, near=True)) is not None:
         return Reply(
             name,
             "wrong",
@@ -524,8 +518,8 @@ def _not_known(
                 decimals,
             ],
         )
-    for (slip, why, turned), of_slip in zip(others, lockers):
-        known = _known_in(question, turned, of_slip)
+    for slip, why, turned in () if rounded else other_readings(question, reading):
+        known = _known_in(question, turned, find(fingerprint(question, turned)))
         if known and known.outcome == "correct" and slip == IN_DEGREES:
             message_text = message(question, slip, {}) if question.quantity else PERHAPS_DEGREES
             return Reply(name, "wrong", slip, [message_text])
@@ -544,30 +538,6 @@ def _not_known(
     if question.symbols and not any(node[0] == "symbol" for node in plain["nodes"]):
         lines = [right]
     return Reply(name, "wrong", "", [" ".join(filter(None, lines))])
-
-
-def _begun(work: Callable[[], Some]) -> Callable[[], Some]:
-    """Begin some work in a thread, since the slow hash lets others run.
-
-    Returns a function that waits for the result.
-    """
-    from concurrent.futures import ThreadPoolExecutor  # needed here alone
-
-    threads = ThreadPoolExecutor(1)
-    try:
-        return threads.submit(work).result
-    except RuntimeError:  # a browser's Python has no threads, so work on demand
-        return work
-    finally:
-        threads.shutdown(wait=False)
-
-
-def _each(find: Find, texts: Sequence[str]) -> list[Locker | None]:
-    """Return what is known of each fingerprint, with parallel searches."""
-    if len(texts) < 2:
-        return [find(text) for text in texts]
-    begun = [_begun(functools.partial(find, text)) for text in texts]
-    return [finish() for finish in begun]
 
 
 def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, str, Reading]]:
