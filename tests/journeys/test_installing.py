@@ -91,18 +91,6 @@ def test_pytest_in_a_fresh_clone_says_what_to_run(tmp_path):
     assert "Traceback" not in done.stdout + done.stderr
 
 
-def test_an_address_that_does_not_answer_is_named(tmp_path):
-    """The first publication ended in a traceback."""
-    done = subprocess.run(
-        [sys.executable, "-m", "notebook_pages.carry_over", "http://127.0.0.1:9/", tmp_path],
-        capture_output=True,
-        text=True,
-        cwd=REPOSITORY,
-    )
-    assert done.returncode != 0 and len(done.stderr.splitlines()) == 1, done.stderr
-    assert "http://127.0.0.1:9/ cannot be reached" in done.stderr
-
-
 @pytest.mark.parametrize("project", ["."], indirect=True)
 def test_the_module_from_the_sdist_passes_its_tests(project, tmp_path):
     _, unpacked, wheel = project

