@@ -1,8 +1,4 @@
-"""Print two tables, all measured in this run: ``python -m tools.benchmarks``.
-
-The other modules here are separate programs, each described at its beginning; most measure the
-built book. Grading is measured in ``packages/coursework/benchmarks``.
-"""
+"""Print two tables, all measured in this run: ``python -m tools.benchmarks``."""
 
 import platform
 from importlib.metadata import version
