@@ -1,11 +1,10 @@
-"""Print two tables, all measured in this run: ``python -m tools.benchmarks``."""
+"""Print tables, all measured in this run: ``python -m tools.benchmarks``."""
 
 import platform
 from importlib.metadata import version
 
-from . import conversions, symbols
+from . import conversions
 
-SYMBOLIC = ("SciPy", "pytransform3d", "SymPy")
 #: A row that is slower than the fastest by more than this factor needs a reason.
 ALLOWED = 1.5
 #: The reasons, each with the size up to which it holds.
@@ -17,7 +16,7 @@ REASONS = {
 
 
 def main():
-    packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy", "sympy"))
+    packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
     print(f"Python {platform.python_version()}, {packages}, {platform.machine()}.")
     print(
         "Each time is the shortest processor time for one item. The largest error follows it, in "
@@ -37,13 +36,6 @@ def main():
     print("\nA lower limit for the time of any such library, at N = 1,000,000:")
     for task, seconds in conversions.limits():
         print(f"{task}: {_in_words(seconds / 1_000_000)} an item")
-    print("\nTime relative to the module (below 1 the others are faster):\n")
-    print(f"| what | N | orientation | {' | '.join(f'{peer} takes' for peer in SYMBOLIC)} |")
-    print(f"|---|---|---|{'---|' * len(SYMBOLIC)}")
-    for task, size, seconds in symbols.rows():
-        ours = seconds["orientation"]
-        ratios = (f"{seconds[peer] / ours:.3g} x" if peer in seconds else "" for peer in SYMBOLIC)
-        print(f"| {task} | {size} | {_in_words(ours)} | {' | '.join(ratios)} |", flush=True)
 
 
 def _in_words(seconds):
