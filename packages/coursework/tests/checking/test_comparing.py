@@ -337,7 +337,7 @@ def test_words_and_what_a_person_reads():
         reply = compare("a/b", text, to_plain(answer), {}.get)
         assert (reply.question, reply.answer) == ("a/b", "")
         assert (reply.outcome, reply.note) == ("undecided", "for a person")
-        assert reply.messages == [f"Somebody will read this answer of {words} and mark it."]
+        assert reply.messages == [f"A person will mark this answer ({words})."]
 
 
 # ---- what is sealed ----------------------------------------------------------------------------

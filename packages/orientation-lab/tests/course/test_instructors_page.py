@@ -46,7 +46,7 @@ def reference():
 
 
 def test_the_list_of_commands_is_made_from_their_help():
-    made = PAGE.read_text("utf8").partition("This list is made from the help of the commands.\n\n")[
+    made = PAGE.read_text("utf8").partition("This list is generated from the commands' help.\n\n")[
         2
     ]
     assert made == reference(), reference()

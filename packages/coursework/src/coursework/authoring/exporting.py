@@ -35,7 +35,7 @@ SPECIAL = {ord(sign): f"&#{ord(sign)};" for sign in "{}~#=%"}
 #: More replies than these to one place nobody reads.
 MOST_REPLIES = 2
 #: Moodle compares one place at a time, and a reply is to a whole answer.
-PERHAPS = Markup("<p>If the rest of your answer fits, too:</p>")
+PERHAPS = Markup("<p>If your other entries show the same mistake:</p>")
 ENVIRONMENT = Environment(
     loader=PackageLoader("coursework.authoring", "templates"),
     autoescape=True,

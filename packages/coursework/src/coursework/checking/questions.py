@@ -375,9 +375,7 @@ def compare(
         reading = read(question, plain)
         if kinds()[question.kind].by_a_person:
             words = len(cast(str, reading.text).split())
-            message_text = (
-                f"Somebody will read this answer of {number_of(words, 'word')} and mark it."
-            )
+            message_text = f"A person will mark this answer ({number_of(words, 'word')})."
             return Reply(name, "undecided", "for a person", [message_text])
         text = fingerprint(question, reading)
         if find is None:

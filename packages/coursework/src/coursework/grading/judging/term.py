@@ -364,8 +364,8 @@ def term_of(folder: str | Path) -> Term:
 
 
 NEW = """\
-# The term: who is in the course, what is due when, and the rules that hold for all. Every command
-# reads this file. A line that begins with # is a suggestion: remove the # to use it.
+# The term: who is in the course, what is due when, and the rules for everybody. Every command reads
+# this file. A line that begins with # is a suggestion: remove the # to use it.
 
 name = {name}
 time-zone = {zone}  # of the times below
@@ -375,21 +375,21 @@ time-zone = {zone}  # of the times below
 {roster}
 
 # Which of several attempts counts: "newest in time" (a late one only if none came in time) or
-# "last". A blank attempt never counts if another one answers something.
+# "last". A blank attempt never counts if another contains an answer.
 attempts = "newest in time"
 
 [late]
-# grace-minutes = 15      # so many minutes cost nothing
-# a-day = 0.1             # the share of the points that each day costs, once it has begun
-# most = 0.5              # the most that all days together cost
-# nothing-after-days = 7  # after this, no points
-# marked = 0.1            # the cost if a system says "late", but not when it came
+# grace-minutes = 15      # being this many minutes late costs nothing
+# a-day = 0.1             # share of the points deducted for each day, or part of a day
+# most = 0.5              # the largest share that lateness can cost
+# nothing-after-days = 7  # work later than this earns no points
+# marked = 0.1            # share deducted if a system says only that work was late, not by how much
 {assignments}
 # A sitting: questions that students answer on paper; `coursework sitting` writes and prints one.
 # [assignments.quiz]
 # questions = ["{first}/question"]
-# homework-cap = 0.25    # homework on them counts at most the share shown here, plus this, or:
-# homework-factor = 0.5  # once this is marked, homework on them counts this share of its points
+# homework-cap = 0.25    # homework on these earns at most the share earned here plus this; or else:
+# homework-factor = 0.5  # homework on these earns this share of its points once this is marked
 
 # The lowest of these marks does not count for the course:
 # [[drop]]
@@ -405,13 +405,13 @@ attempts = "newest in time"
 # {first} = 2026-10-15T23:59:00
 # time = 1.5              # half as much time again, from opens to due
 
-# What a corrected question may do to marks already given; see `coursework regrade --dry-run`:
+# Which marks a corrected question may change; see `coursework regrade --dry-run`:
 [regrading]
-# never-lower = ["{first}/question"]            # nobody loses by it
-# full-credit = ["{first}/question@taken-out"]  # who had a removed variant; without @, all
-# void = ["{first}/question"]                   # it counts for nobody
+# never-lower = ["{first}/question"]            # no student loses points
+# full-credit = ["{first}/question@taken-out"]  # students whose variant was removed; without @, all
+# void = ["{first}/question"]                   # counts for nobody
 
-# The columns of the gradebook, if its language is not one that coursework knows:
+# The columns of the gradebook, if coursework does not know its language:
 # [gradebook]
 # identifier = "Tunniste"
 # grade = "Arvosana"
@@ -421,9 +421,9 @@ NEW_ASSIGNMENT = """
 # opens = 2026-09-28T08:00:00
 # due = 2026-10-05T23:59:00
 # weight = 1              # in the total of the course
-# column = "{title}"      # of the gradebook that your system exports, or how its name begins
-# times = "worksheet.csv" # who handed in when, if the names of the files do not say
-# notebooks = ["{plain}"] # if it has other notebooks, or several
+# column = "{title}"      # in the gradebook that your system exports: its name, or how it begins
+# times = "worksheet.csv" # when each student handed in, if the names of the files do not say
+# notebooks = ["{plain}"] # if the assignment has other or several notebooks
 """
 
 
