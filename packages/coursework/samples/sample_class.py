@@ -1,6 +1,6 @@
 """Makes a class to try grading on: right, mistaken, unfinished, broken and hostile notebooks.
 
-Run it with ``python packages/coursework/benchmarks/sample_class.py FOLDER STUDENTS NOTEBOOK ...``.
+Run it with ``python packages/coursework/samples/sample_class.py FOLDER STUDENTS NOTEBOOK ...``.
 What went into each notebook is written down beside them in ``expected.json``, so that what comes
 out of grading can be held against it. Nobody in it is real, and the same seed makes the same class.
 """
