@@ -292,8 +292,8 @@ class WarmParent:
                 f"the isolated process cannot read Python's own libraries ({error}). Root "
                 "runs it as another user, but only their owner may read them, perhaps "
                 "because of a umask such as 077. Let everybody read them, with `chmod -R "
-                "o+rX` on their folder and `chmod o+x` on the folders above it, or grade as "
-                "an ordinary user with a Python of their own"
+                "o+rX` on their folder, and install bubblewrap or use `chmod o+x` on the "
+                "folders above it. Or grade as an ordinary user with a Python of their own"
             )
         try:
             Path("trial").write_bytes(b"x" * 100)
