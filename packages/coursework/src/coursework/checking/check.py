@@ -171,8 +171,8 @@ def worked_solution(name: str, code: str) -> Reply:
             ],
         )
     entry = _note_help(name, student, "solution")
-    said = ["Read it, close it, and write it out for yourself."]
-    reply = Reply(name, "hints", "", said, solution_on(sealed, locker.solution))
+    advice = ["Read it, close it, and write it out for yourself."]
+    reply = Reply(name, "hints", "", advice, solution_on(sealed, locker.solution))
     _offer_sibling(reply, sealed.question, entry.help)
     return reply
 

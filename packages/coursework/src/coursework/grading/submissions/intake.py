@@ -27,7 +27,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, NamedTuple, TypedDict
+from typing import NamedTuple, TypedDict
 
 from ...checking.fields import by_name, many
 from ..reading import AsJson
@@ -36,9 +36,6 @@ from ..store import REFUSED, Store
 from .identity import GRADESCOPE_TABLE, RESUBMITTED, Claim, Layout, looks_like
 from .pictures import JPEG, PNG, is_picture
 from .roster import Roster
-
-if TYPE_CHECKING:
-    pass
 
 #: Gives the bytes of a file.
 Read = Callable[[], bytes]
