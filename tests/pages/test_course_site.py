@@ -39,7 +39,7 @@ def course(tmp_path_factory):
     return folder / "my-statics"
 
 
-def test_the_site_holds_all_and_tells_nothing(course):
+def test_the_site_holds_all_tells_nothing_and_checks_answers(course, browser):
     site = course / "build" / "site"
     front, page = ((site / f"{name}.html").read_text("utf8") for name in ("index", PAGE))
     assert "My statics" in front and 'href="exercises/first-steps.html"' in front
@@ -61,8 +61,6 @@ def test_the_site_holds_all_and_tells_nothing(course):
     # The author decides on the licence of a course, and this one has none.
     assert "CC BY" not in front + page and "orientation" not in (front + page).lower()
 
-
-def test_an_answer_is_checked_where_it_is_written(course, browser):
     served = server(folder=course / "build" / "site")
     threading.Thread(target=served.serve_forever, daemon=True).start()
     context = browser.new_context(viewport={"width": 1300, "height": 900})

@@ -51,7 +51,7 @@ CHAPTERS = [name for name in PAGES if not name.startswith(STORED)]
 
 
 @pytest.mark.long
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(2)  # one in each engine
 @pytest.mark.parametrize("name", CHAPTERS)
 def test_results_equal_the_stored_ones(engine, site, name):
     compare(engine, site, name)

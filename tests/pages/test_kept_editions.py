@@ -114,15 +114,6 @@ def test_renewal_that_breaks_off_anywhere_leaves_the_edition_before_it(engine, e
         assert cut > 6, "the list, three pages, a style and a script are fetched one by one"
 
 
-def test_kept_pages_open_on_a_network_that_hangs_or_is_busy(engine, editions):
-    with network(editions(1)) as (net, address):
-        keep(engine, address, editions(1))
-        for broken in ("busy", "hangs"):
-            net.left, net.broken = 0, broken
-            assert shown(engine, address) == 1
-        net.held.set()
-
-
 def test_open_tab_is_told_what_has_changed_and_still_has_its_own_edition(engine, editions):
     with network(editions(1)) as (net, address):
         keep(engine, address, editions(1))
@@ -149,8 +140,10 @@ def test_open_tab_is_told_what_has_changed_and_still_has_its_own_edition(engine,
         assert shown(engine, address) == 2
 
 
-def test_neighbours_of_a_book_at_the_root_are_left_alone(engine, editions):
-    with network(editions(1)) as (_, address):
+def test_kept_pages_leave_neighbours_alone_open_on_bad_networks_and_can_be_forgotten(
+    engine, editions
+):
+    with network(editions(1)) as (net, address):
         keep(engine, address, editions(1))
         neighbour = editions(1) / "other-course" / "page.html"
         neighbour.parent.mkdir()
@@ -160,11 +153,11 @@ def test_neighbours_of_a_book_at_the_root_are_left_alone(engine, editions):
         assert engine.run(header, "/other-course/page.html") is None
         engine.go(f"{address}other-course/page.html")
         assert engine.run("() => window.crossOriginIsolated") is False
-
-
-def test_forgotten_book_is_gone(engine, editions):
-    with network(editions(1)) as (net, address):
-        keep(engine, address, editions(1))
+        for broken in ("busy", "hangs"):
+            net.left, net.broken = 0, broken
+            assert shown(engine, address) == 1
+        net.left = None
+        net.held.set()
         engine.go(f"{address}index.html")
         assert "no longer stored" in engine.run(KEEP, scripts_of(editions(1)), "Forget")
         assert engine.run("() => caches.has('book /')") is False

@@ -104,10 +104,13 @@ def run_and_stop(page, address):
 
 @pytest.mark.long
 def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
-    """Without special headers, a service worker isolates the page and keeps the book on request."""
+    """On a server like that of GitHub Pages, a service worker isolates the page.
+
+    It keeps the book on request.
+    """
     (tmp_path / "courses").mkdir()
     (tmp_path / "courses" / "book").symlink_to(HTML, target_is_directory=True)
-    with serving(folder=tmp_path) as root:
+    with serving(LikeGitHubPages, tmp_path) as root:
         address = f"{root}courses/book/"
         run_and_stop(page, address)
         page.click("details.take-away summary")
@@ -133,12 +136,6 @@ def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
         page.evaluate(f"fetch('{address}lite/index.html').then(() => 'there', () => 'gone')")
         == "gone"
     )
-
-
-@pytest.mark.long
-def test_headers_like_those_of_github_pages(page):
-    with serving(LikeGitHubPages) as address:
-        run_and_stop(page, address)
 
 
 @pytest.mark.parametrize("colours", ["light", "dark"])

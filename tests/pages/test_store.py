@@ -8,8 +8,6 @@ import time
 from pathlib import Path
 from types import SimpleNamespace
 
-import pytest
-from engines import ENGINES, Chromium
 from places import REPOSITORY
 from test_answers import ANSWER, BLANK, EMPTY, EXERCISE, OTHER, Tab, fill
 from test_answers import context as context  # noqa: PLC0414 -- a fixture
@@ -30,26 +28,6 @@ def kept_before(page, site, stored):
     """Return a browser that stores ``stored`` before the page is opened."""
     page.goto(f"{site}search.html")
     page.evaluate(PUT, stored)
-
-
-@pytest.mark.parametrize(
-    "kind",
-    [
-        pytest.param("Firefox", marks=pytest.mark.long),
-        pytest.param("WebKit", marks=pytest.mark.long),
-        "Chromium",
-    ],
-)
-def test_newer_form_in_each_engine(request, site, kind):
-    engine = Chromium(request.getfixturevalue("browser")) if kind == "Chromium" else ENGINES[kind]()
-    try:
-        engine.go(f"{site}{CHAPTER}.html")
-        engine.run(PUT, {"book / version": "99"})
-        engine.go(f"{site}{CHAPTER}.html")
-        assert engine.wait("() => globalThis.progress?.whyNotKept()").startswith("A newer edition")
-        assert engine.run(HERE) == {}
-    finally:
-        engine.close()
 
 
 # --- three tabs -----------------------------------------------------------------------------------

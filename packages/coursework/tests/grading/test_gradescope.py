@@ -140,7 +140,7 @@ except OSError:
 
 @pytest.mark.long
 @needs_a_machine
-def test_a_submission_gets_its_results(machine):
+def test_a_submission_gets_its_results_or_the_reason_why_not(machine):
     results = graded(machine, handed_in(sum="sine = -sm.sin(alpha + beta)"))
     assert results["score"] == 5 and [one["score"] for one in results["tests"]] == [2, 0, 3]
     assert [one["max_score"] for one in results["tests"]] == [2, 1, 3]
@@ -156,6 +156,13 @@ def test_a_submission_gets_its_results(machine):
         "import coursework; print(coursework.__file__)",
     ).stdout
     assert said.startswith("/autograder/source/packages/coursework/")
+    assert (
+        "on the list of this course"
+        in graded(machine, handed_in(), "stranger@uni.example")["output"]
+    )
+    results = graded(machine, "{")
+    assert results["score"] == 0 and "not well-formed JSON" in results["output"]
+    assert "answers.pdf: Not a notebook" in graded(machine, "x", name="answers.pdf")["output"]
 
 
 @pytest.mark.long
@@ -167,18 +174,6 @@ def test_a_submission_reaches_neither_the_solutions_nor_its_results(machine):
         machine, handed_in(sum=STEAL + "sine = sm.Symbol(str(found).replace(' ', '_'))")
     )
     assert stolen["score"] == 5
-
-
-@pytest.mark.long
-@needs_a_machine
-def test_what_cannot_be_graded_is_told_to_the_student(machine):
-    assert (
-        "on the list of this course"
-        in graded(machine, handed_in(), "stranger@uni.example")["output"]
-    )
-    results = graded(machine, "{")
-    assert results["score"] == 0 and "not well-formed JSON" in results["output"]
-    assert "answers.pdf: Not a notebook" in graded(machine, "x", name="answers.pdf")["output"]
 
 
 def test_the_packages_are_named_in_the_versions_that_are_here():
