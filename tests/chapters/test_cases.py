@@ -62,14 +62,15 @@ def test_the_stars_say_what_another_program_finds():
         noisy = seen + deviations[:, None] * random.normal(size=seen.shape)
         errors.append(Rotation.align_vectors(noisy, seen, weights=deviations**-2.0)[0].as_rotvec())
     arcseconds = np.degrees(np.sqrt(np.mean(np.square(errors), axis=0))) * 3600
-    single, many, foretold, alike = (
+    single, many, predicted, unweighted = (
         numbers(line.partition(":")[2]) for line in printed("rms over 2000").splitlines()
     )
     # An rms over 400 is uncertain by 3.5 per cent, one over 2000 by 1.6: three times that.
     assert (
-        np.abs(arcseconds / foretold - 1).max() < 0.11 and np.abs(many / foretold - 1).max() < 0.06
+        np.abs(arcseconds / predicted - 1).max() < 0.11
+        and np.abs(many / predicted - 1).max() < 0.06
     )
-    assert (alike > 1.1 * many).all() and np.abs(single[2]) < 4 * many[2]
+    assert (unweighted > 1.1 * many).all() and np.abs(single[2]) < 4 * many[2]
 
 
 def test_a_second_camera_sees_what_the_first_does_not():
@@ -118,9 +119,9 @@ def test_two_sensors_nod_with_each_step_and_turn_with_the_steel():
 
 def test_skin_that_tips_a_plate_does_more_harm_than_balls_that_slip_each_for_itself():
     lines = {
-        line[:20].strip(): numbers(line[20:]) for line in printed("plate tips").splitlines()[1:]
+        line[:20].strip(): numbers(line[20:]) for line in printed("plate tilts").splitlines()[1:]
     }
-    alone, together = lines["skin, each its way"], lines["skin, plate tips"]
+    alone, together = lines["skin, independent"], lines["skin, plate tilts"]
     assert (together[::3] > 1.4 * alone[::3]).all()
 
 
