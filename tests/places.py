@@ -15,14 +15,14 @@ PATIENCE = 180_000  # milliseconds, for a busy machine; nothing waits longer tha
 def html_pages():
     """Return the addresses of all pages of the built site, relative to its root.
 
-    Notebooks in ``lite``, embeddable figures and the server's error page are left out.
+    Notebooks in ``lite`` and the server's error page are left out.
     """
     paths = [path.relative_to(HTML) for path in HTML.rglob("*.html")]
     if not paths:
         raise FileNotFoundError(
             f"these tests look at the built book, which {HTML} does not hold: make book"
         )
-    return sorted(str(path) for path in paths if path.parts[0] not in ("lite", "embed", "404.html"))
+    return sorted(str(path) for path in paths if path.parts[0] not in ("lite", "404.html"))
 
 
 def every_day(cases, *chosen):

@@ -28,11 +28,6 @@ def test_no_two_places_of_a_page_have_the_same_address(page, site, address):
     assert {name for name in ids if ids.count(name) > 1} == set()
 
 
-def test_an_embedded_figure_has_a_heading(page, site):
-    page.goto(f"{site}embed/gimbal.html")
-    expect(page.get_by_role("heading", level=1)).to_have_count(1)
-
-
 def test_a_slider_stands_where_it_was_left_after_back(page, site):
     page.goto(site + CHAPTER)
     page.wait_for_function(SETTLED)

@@ -44,11 +44,9 @@ POLICY = {
 
 
 def pages_of(site):
-    """Return the pages of the book in ``site``, without notebooks and embeddable figures."""
+    """Return the pages of the book in ``site``, without notebooks."""
     return [
-        path
-        for path in sorted(site.rglob("*.html"))
-        if path.relative_to(site).parts[0] not in ("lite", "embed")
+        path for path in sorted(site.rglob("*.html")) if path.relative_to(site).parts[0] != "lite"
     ]
 
 
@@ -84,7 +82,7 @@ def write(site):
     elsewhere = sorted(
         {"/".join(address.split("/")[:3]) for address in addresses if "://" in address}
     )
-    for page in [*pages_of(site), *sorted(site.glob("embed/*.html"))]:
+    for page in pages_of(site):
         before = page.read_text("utf8")
 
         def with_version(match, folder=page.parent):

@@ -13,11 +13,9 @@ from pathlib import Path
 from docutils import nodes
 
 from .page import take_later
-from .paths import NODE_MODULES, REGISTERED, esbuild, fingerprint, named
-from .used import files_used
+from .paths import REGISTERED, esbuild, named
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
-EMBEDDED = "embed"  # the folder of the site with a page for each single figure
 # On a narrow screen the drawing of a figure stays in view, under the bar at the top of the page.
 PAGE_STYLE = """
 .cell_output .output:has(> .moving) { overflow: visible; }
@@ -100,26 +98,6 @@ def add_scripts(app, pagename, templatename, context, doctree):
     ]
 
 
-def write_embedded(app, exception):
-    """Write a page for each single figure, for embedding, if its sources have changed."""
-    if exception or app.builder.format != "html" or "embedding" not in REGISTERED:
-        return
-    site = Path(app.outdir)
-    sources = [
-        *files_used(f"import {REGISTERED['embedding']}"),
-        NODE_MODULES / ".package-lock.json",
-        Path(__file__),
-    ]
-    made_from, stamp = fingerprint(*sources), site.with_name("embedded-from")
-    if stamp.is_file() and stamp.read_text() == made_from and (site / EMBEDDED).is_dir():
-        return
-    embedding = named(REGISTERED["embedding"])
-    texts, later = scripts_and_styles([*embedding.figures(), *named(REGISTERED["figures"]).BUILT])
-    write(figures_as_written(app), texts | later)
-    write(site / EMBEDDED, embedding.files())
-    stamp.write_text(made_from)
-
-
 def bring(app, exception):
     """Put the scripts and styles of figures into the site.
 
@@ -157,5 +135,4 @@ def setup(app):
     app.connect("doctree-read", drop_widget_state)
     app.connect("html-page-context", add_scripts, priority=960)  # after page.py has set the styles
     # Run this before page.py minifies the scripts.
-    app.connect("build-finished", write_embedded, priority=900)
     app.connect("build-finished", bring, priority=910)

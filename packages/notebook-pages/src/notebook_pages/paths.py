@@ -46,7 +46,6 @@ class Registered(TypedDict, total=False):
     plugin: str
     exercises: str
     figures: str
-    embedding: str
     licences: dict[str, tuple[str, str]]
     data: dict[str, Data]
     wheels: list[Wheel]

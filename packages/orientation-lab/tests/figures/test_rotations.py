@@ -2,6 +2,7 @@
 and the page as a reader meets it.
 """
 
+import base64
 import json
 import re
 from functools import cache
@@ -25,12 +26,17 @@ from orientation import (
     quaternion_from_dcm,
 )
 from orientation_figures.moving import bundle
-from orientation_figures.moving.address import fragment_of
 from orientation_figures.rotations import Stop, painter, scenes
 from tools import rotations as written_down
 
 STILLS = {still["id"]: still for still in scenes()["stills"]}
 FROM, TO = np.radians((-80, 60, -30)), np.radians((100, 65, 40))
+
+
+def fragment_of(place, content):
+    """The fragment of an address, as ``js/address.js`` writes it."""
+    data = base64.urlsafe_b64encode(json.dumps(content).encode()).decode()
+    return f"#{place}=1.{data.rstrip('=')}"
 
 
 @cache
@@ -402,56 +408,6 @@ def test_an_address_opens_the_gimbal_as_it_was(open_essay):
     ):
         page = open_essay(fragment_of("rotations", content))
         assert not page.evaluate("document.querySelector('.world').world.state.free")
-
-
-# ---- in somebody else's page ---------------------------------------------------------------------
-
-PLAIN = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Mine</title><link rel="icon" href="data:,">
-</head><body><h1>My page</h1>{frame}
-<script src="book/embed/orientation-figure-1.js"></script><orientation-figure-1 figure="gimbal" state="{state}">
-</orientation-figure-1></body></html>"""
-
-
-def test_one_line_puts_a_figure_into_any_page(browser, tmp_path):
-    """A frame, and an element that leaves no other name: both show
-    the figure as the address says.
-    """
-    from notebook_pages.moving import scripts_and_styles
-    from orientation_figures.moving import embedding
-
-    texts, later = scripts_and_styles(["gimbal"])
-    for folder, files in (("_static/moving", texts | later), (embedding.FOLDER, embedding.files())):
-        (tmp_path / "book" / folder).mkdir(parents=True)
-        for name, text in files.items():
-            (tmp_path / "book" / folder / name).write_text(text, "utf8")
-    # As it was copied beside a figure of a chapter.
-    state = fragment_of("figure-gimbal", {"angles": [0.5, 0.25, -0.125], "sequence": "zyx"})
-    text = PLAIN.format(frame=embedding.line("book", "gimbal", state), state=state)
-    (tmp_path / "index.html").write_text(text, "utf8")
-    page = browser.new_page()
-    faults = []
-    page.on("pageerror", lambda error: faults.append(str(error)))
-    page.goto((tmp_path / "index.html").as_uri())
-    names = "() => Object.keys(window).filter((name) => !/^[0-9]/.test(name)).sort().join()"
-    for place in ("body > iframe", "orientation-figure-1 iframe"):
-        frame = page.frame_locator(place)
-        frame.locator(".moving[data-ready]").wait_for()
-        assert frame.get_by_label("psi in degrees", exact=True).input_value() == "28.65"
-        assert frame.get_by_label("Sequence").input_value() == "zyx"
-    height = "document.querySelector('orientation-figure-1 iframe').style.height"
-    page.wait_for_function(f"{height} !== '600px'")
-    (tmp_path / "empty.html").write_text("<!doctype html><title>Mine</title>", "utf8")
-    empty = browser.new_page()
-    empty.goto((tmp_path / "empty.html").as_uri())
-    assert page.evaluate(names) == empty.evaluate(names)
-    # What nobody could have set is left aside.
-    fragment = fragment_of("figure-gimbal", {"angles": [1, "x", 2], "sequence": "abc"})
-    page.goto((tmp_path / "book/embed/gimbal.html").as_uri() + fragment)
-    page.locator(".moving[data-ready] .live").wait_for()
-    assert page.get_by_label("psi in degrees", exact=True).input_value() == "15"
-    assert faults == []
-    page.close()
-    empty.close()
 
 
 CAPTIONED = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>A chapter</title><link rel="icon"

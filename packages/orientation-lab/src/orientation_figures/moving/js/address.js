@@ -1,6 +1,6 @@
 // What an address of the book carries behind its #: the name of a place on the page, as a rule, and after it, where
 // there is more to say, "=1." and plain data: how a figure stands, or what two programs gave. The number is the version
-// of this format; an address that somebody has kept is read for ever. address.py is the same in Python.
+// of this format; an address that somebody has kept is read for ever.
 
 const ADDRESS_VERSION = 1, LONGEST_ADDRESS = 6000;
 const NEWER_ADDRESS = 'This address was made by a newer edition of the book than this page. Reload the page.';

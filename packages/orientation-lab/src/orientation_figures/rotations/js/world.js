@@ -152,19 +152,6 @@ class World {
     this.showDials(stop);
     if (!first) this.tell(`${stop.before}`);
     this.passed = false;
-    if ('play' in this.figure.dataset) this.play();
-  }
-
-  // Alone, in somebody else's page, a stop runs by itself once.
-  play() {
-    const begin = performance.now(), length = calm() ? 1 : 7000;
-    const tick = () => {
-      if (this.state.free || this.set.size) return;
-      this.goal.t = calm() ? stopOf(this.state.stop).still : Math.min(1, (performance.now() - begin) / length);
-      this.wake();
-      if (this.goal.t < 1 && !calm()) requestAnimationFrame(tick);
-    };
-    tick();
   }
 
   // What the text wants now.
