@@ -43,7 +43,7 @@ def test_a_click_answers_the_question_of_a_shared_order(page):
     answer(page).get_by_text("One question decides.").wait_for()
     assert "scalar part of the quaternions come first or last?" in answer(page).inner_text()
     last = answer(page).get_by_role("listitem").filter(has_text="comes last in both")
-    click(page, last.get_by_role("button", name="So it is"))
+    click(page, last.get_by_role("button", name="That is so"))
     answer(page).get_by_text("They differ, and this is how:").wait_for()
     reply = answer(page).inner_text().lower()
     assert "y and z of the body reversed" in reply and "world" not in reply
@@ -61,7 +61,7 @@ def test_keys_answer_the_question_of_a_shared_layout(page):
     reversed_axes = page.locator(".moving").get_by_text("reversed (").all()
     assert all(each.evaluate("(own) => !!own.closest('.answer')") for each in reversed_axes)
     columns = answer(page).get_by_role("listitem").filter(has_text="are the columns")
-    button = columns.get_by_role("button", name="So it is")
+    button = columns.get_by_role("button", name="That is so")
     for _ in range(12):  # from the field to the button with the Tab key alone
         page.keyboard.press("Tab")
         if button.evaluate("(own) => own === document.activeElement"):

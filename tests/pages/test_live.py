@@ -1342,6 +1342,6 @@ def test_the_explorer_of_sequences_works_in_the_page(context, site):
     assert cell.locator("math").count() == 5
     cell.get_by_label("theta: a symbol or radians").fill("pi/6")
     cell.get_by_text("Here it is 0.524 rad away from that.").first.wait_for()
-    cell.get_by_label("Turns are").select_option("space")
+    cell.get_by_label("Rotations are").select_option("space")
     cell.locator("msqrt").first.wait_for()
     assert page.outside() == [] and page.errors == []

@@ -56,7 +56,7 @@ QUESTIONS = (
         "2  Body or space fixed?",
         "90 degrees about z, then 90 about x: body fixed, x ends up along y; space fixed, along z.",
     ),
-    ("3  Where is the scalar?", "The quaternion of no rotation: the 1 is the scalar."),
+    ("3  Where is the scalar?", "The identity quaternion: the 1 is the scalar."),
     (
         "4  Conjugate?",
         "+30 degrees about z: 0.966 and 0.259 as here, 0.966 and -0.259 conjugated.",

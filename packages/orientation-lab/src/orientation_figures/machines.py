@@ -16,10 +16,10 @@ NORTH_EAST_DOWN = np.diag([1.0, -1.0, -1.0])
 def aircraft_drawing(bank=np.radians(30)):
     """Return a drawing of an airliner in a right turn, banked by ``bank`` radians, from ahead."""
     drawing = Drawing(
-        "An airliner seen from ahead and a little above, banked to the right by "
+        "An airliner seen from the front and slightly above, banked to the right by "
         f"{in_degrees(bank)}. "
         "In its frame D, d x points out of the nose, d y along the right wing, which points down "
-        "and to the left of the picture, and d z through the floor. "
+        "and to the left in the picture, and d z through the floor. "
         "Beside it is the frame N of the ground: x north, y east, z down.",
         view_from(np.radians(-38), np.radians(16)),
         92,
@@ -61,7 +61,7 @@ def wrist_drawing(angles=(0.3, 0.9, 0.4)):
         "through theta about a perpendicular axis, and a third turns the gripper about its "
         "long axis through phi. "
         "The gripper, frame G, has two fingers, and g z points out between them. "
-        "The three axes meet in one point.",
+        "The three axes meet at one point.",
         view_from(np.radians(-48), np.radians(20)),
         104,
     )
@@ -145,8 +145,8 @@ def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
     """
     drawing = Drawing(
         "A tilted phone above the ground. "
-        "In its frame P, p x points to the right across the screen, p y to its top edge, and p z "
-        "out of the screen. "
+        "In its frame P, p x points to the right across the screen, p y towards its top edge, and "
+        "p z out of the screen. "
         "From its middle an arrow points straight up, which is what the accelerometer measures. "
         f"Another arrow, the magnetic field, points north, {in_degrees(dip)} below "
         "the horizontal. "
@@ -229,8 +229,8 @@ def earth_drawing(longitude=np.radians(68), latitude=np.radians(38)):
     """Return a drawing of the Earth with its own frame and the two ground frames at one place."""
     drawing = Drawing(
         "The Earth as a sphere with its equator and one meridian. "
-        "From its middle e z points to the north pole, e x to where the meridian of Greenwich "
-        "meets the equator, and e y to the east of it. "
+        "From its centre e z points to the north pole, e x to where the Greenwich meridian "
+        "meets the equator, and e y to the equator 90 degrees further east. "
         f"At a place {in_degrees(longitude)} east and {in_degrees(latitude)} "
         "north there are two triads on the ground. "
         "G: g x east, g y north, g z straight up. "

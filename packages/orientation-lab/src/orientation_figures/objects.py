@@ -62,12 +62,12 @@ def plane_drawing(axis, angle, first="N", second="A", name="theta", components=F
     right, up = ("xyz"[np.argmax(row)] for row in view[:2])
     old, new = first.lower(), second.lower()
     alt = (
-        f"Looking down the {axis} direction that the frames {first} and {second} share; {old} "
+        f"Looking down the {axis} axis that the frames {first} and {second} share. {old} "
         f"{shared} and {new} {shared} point "
         + (
-            "away from the reader, a circle with a cross. "
+            "away from the reader, drawn as a circle with a cross. "
             if away
-            else "at the reader, a circle with a dot. "
+            else "at the reader, drawn as a circle with a dot. "
         )
         + f"{old} {right} points to the right and {old} {up} up. "
         f"{new} {right} is turned counterclockwise from {old} {right} through {name}, and {new} "
@@ -117,12 +117,12 @@ TURNING_FRAMES_ALT = (
     "Four frames, each drawn at its own place: A gold with solid arrows, B red with dashed "
     "arrows, C green with dash-dotted arrows, D blue with dotted arrows. At first they are "
     "aligned, x towards the reader and to the left, y to the right, z up. First B, C and D turn "
-    "together through 50 degrees, while their arrows marked z do not move. Then C and D turn "
-    "together through 45 degrees, while their arrows marked x do not move. Last, D turns alone "
-    "through 40 degrees, while its arrow marked z, no longer upright, does not move. Seen from the "
-    "tip of the arrow that does not move, each turn is counterclockwise. The still picture shows "
-    "the end. With each frame a thin grey triad shows the frame before it in the order A, B, C, D, "
-    "and curved arrows lead from the grey arrows to the turned arrows."
+    "together through 50 degrees, while their z arrows do not move. Then C and D turn "
+    "together through 45 degrees, while their x arrows do not move. Last, D turns alone "
+    "through 40 degrees, while its z arrow, no longer upright, does not move. Seen from the "
+    "tip of the arrow that does not move, each rotation is counterclockwise. The still picture "
+    "shows the end. With each frame a thin grey triad shows the frame before it in the order A, B, "
+    "C, D, and curved arrows lead from the grey arrows to the turned arrows."
 )
 
 

@@ -20,7 +20,7 @@ KINDS = sorted(FIGURES)
 #: What a test sets in each figure: the attribute, its value, and where the figure
 #: then shows it, if it has a field.
 CHANGES = {
-    "belt": ("angle", 0.3, "theta, turn of the plate in degrees", 17.19),
+    "belt": ("angle", 0.3, "theta, rotation of the plate in degrees", 17.19),
     "challenge": ("turns", (("z", 0.3),), "Angle of the last turn in degrees", 17.19),
     "cloud": ("large", 0.3, "Error about z in degrees", 17.19),
     "converter": ("quaternion", (1.0, 0.0, 0.0, 0.0), None, None),
@@ -40,7 +40,7 @@ CHANGES = {
     "simple": ("angle", 0.3, "theta in degrees", 17.19),
     "successive": ("turns", (("z", 0.3),), "Turn 1, to frame A in degrees", 17.19),
     "triad": ("angle", 0.3, "theta in degrees", 17.19),
-    "workbench": ("noise", 2.0, "They may differ by, in degrees", 2),
+    "workbench": ("noise", 2.0, "Tolerance in degrees", 2),
 }
 assert set(CHANGES) == set(KINDS), (
     f"CHANGES says what a test sets in each figure, and not in {set(KINDS) - set(CHANGES)}"

@@ -197,7 +197,7 @@ def test_the_example_of_a_manual_that_cannot_be_run():
         ("quaternion", "2, 0, 0, 0", "length 2.0000, not 1"),
         ("matrix", "1 0 0 0 1 0 0 0 -1", "left-handed"),
         ("matrix", "nothing", "0 numbers"),
-        ("body fixed angles", "0,5 0 0", "Write 0.5 for a half: a comma separates two numbers."),
+        ("body fixed angles", "0,5 0 0", "Write 0.5 for one half: a comma separates two numbers."),
     ],
 )
 def test_what_means_no_orientation_is_refused_in_the_readers_terms(form, text, message):

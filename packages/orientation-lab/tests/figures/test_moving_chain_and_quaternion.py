@@ -307,7 +307,7 @@ def test_chain_by_keys_alone(open_figure):
         page.evaluate("document.activeElement.getAttribute('aria-valuetext')")
         == "Turn 1, to frame A, 80 degrees"
     )
-    tab_to(page, "Exchange turns 1 and 2")
+    tab_to(page, "Swap rotations 1 and 2")
     page.keyboard.press("Enter")
     expected.turns = expected.turns[::-1]
     expected.compare = "1 and 2 exchanged"

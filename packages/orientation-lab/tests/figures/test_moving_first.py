@@ -125,7 +125,7 @@ TREE = [
 )
 def test_a_tree_has_each_frame_once_and_its_reference_before(edges):
     with pytest.raises(
-        TraitError, match="edges (turns B in A, but there is no frame A|makes the frame)"
+        TraitError, match="edges (turns B in A, but there is no frame A|defines the frame)"
     ):
         GraphFigure(edges=edges, target="N", source="N")
 
@@ -161,14 +161,14 @@ def test_the_matrix_over_a_path_is_that_of_sympy(open_figure, target, source):
 def test_frames_are_added_turned_and_removed_by_keys(open_figure):
     page = open_figure(GraphFigure(edges=TREE[:2], target="B", source="A"))
     assert "B C A = B C N N C A" in words(page) and "transposed: N C A" in words(page)
-    page.get_by_role("button", name="add a frame turned in A").press("Enter")
+    page.get_by_role("button", name="add a frame with reference frame A").press("Enter")
     type_number(page, "Angle of the frame in degrees", 90)
     page.get_by_label("about", exact=True).select_option("x")
     page.get_by_label("Matrix of").select_option("C")
     name = "Direction cosine matrix over the path"
     assert numbers(page, name) == pytest.approx(np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]]))
-    assert page.get_by_role("button", name="add a frame turned in C").is_visible()
-    assert not page.get_by_role("button", name="add a frame turned in D").is_visible()
+    assert page.get_by_role("button", name="add a frame with reference frame C").is_visible()
+    assert not page.get_by_role("button", name="add a frame with reference frame D").is_visible()
     page.get_by_role("button", name="Remove the last").press("Enter")
     settle(page)
     assert page.get_by_label("Matrix of").input_value() == "N", (
@@ -196,7 +196,7 @@ def test_a_matrix_is_matched_by_keys(open_figure):
     type_number(page, "Angle of the last turn in degrees", 60)
     assert words(page).startswith("Solved in 2 turns: 90° about a z")
     assert numbers(page, "Matrix of the box") == pytest.approx(numbers(page, "Matrix of the goal"))
-    page.get_by_role("button", name="Another one").press("Enter")
+    page.get_by_role("button", name="New challenge").press("Enter")
     settle(page)
     assert "where does each arrow" in words(page)
 

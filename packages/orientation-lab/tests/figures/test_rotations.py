@@ -369,7 +369,7 @@ def test_the_camera_is_thrown_and_the_small_turns_add_up(open_essay):
     scroll_to(reopened, "your-turn")
     assert reopened.evaluate("document.querySelector('.world').world.state.thrown") is None
     # Without a pointer there is a button.
-    page.get_by_role("button", name="Give it a swing").press("Enter")
+    page.get_by_role("button", name="Set it swinging").press("Enter")
     rest(page)
     assert page.evaluate("document.querySelector('.world').world.content().rate") != content["rate"]
 

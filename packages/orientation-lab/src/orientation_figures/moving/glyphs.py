@@ -67,7 +67,7 @@ LABELS = (
     "20",
     "90",
     # The axes of a walk past a car.
-    r"\mathrm{error\ of\ the\ heading\ (degrees)}",
+    r"\mathrm{heading\ error\ (degrees)}",
     r"\mathrm{car}",
     "-60",
     "-30",

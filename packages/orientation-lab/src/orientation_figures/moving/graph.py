@@ -21,8 +21,8 @@ class Edges(traitlets.TraitType):
             isinstance(edge, (list, tuple)) and len(edge) == 4 for edge in value
         ):
             raise traitlets.TraitError(
-                f"edges is {value!r}: expected one to five, each with a frame, the frame it is "
-                "turned in, an axis and an angle in radians, such as (('A', 'N', 'z', 0.7), "
+                f"edges is {value!r}: expected one to five, each with a frame, its reference "
+                "frame, an axis and an angle in radians, such as (('A', 'N', 'z', 0.7), "
                 "('B', 'A', 'x', 0.5))"
             )
         known = ["N"]
@@ -34,7 +34,7 @@ class Edges(traitlets.TraitType):
                 )
             if frame in known or frame not in LETTERS:
                 raise traitlets.TraitError(
-                    f"edges makes the frame {frame!r}: expected a new one of "
+                    f"edges defines the frame {frame!r}: expected a new one, from "
                     f"{', '.join(LETTERS[1:])}"
                 )
             known.append(frame)

@@ -23,13 +23,13 @@ EXAMPLES = {
         "Eigen quaternion:\n 0.0505867i + 0.72037j + -0.683741k + -0.104906",
         "RBDL quaternion:\n 0.0505867\n  0.72037\n-0.683741\n 0.104906",
     ),
-    "Roll, pitch, yaw: fixed axes or turned ones (moveit_calibration 132)": (
+    "Roll, pitch, yaw: fixed axes or rotated ones (moveit_calibration 132)": (
         "q = [-0.0372638, -0.0326999, 0.773564, 0.631776]",
         "(0.0035234877615449344, -0.09913217272764203, 1.7720752160631836)",
         {"program": "ROS tf2 (C++)"},
         {"program": "ROS tf2 (C++)"},
     ),
-    "A lamp and a camera out of Blender, in glTF (glTF-Blender-IO 438)": (
+    "A lamp and a camera from Blender, in glTF (glTF-Blender-IO 438)": (
         "<Quaternion (w=0.5709, x=0.1691, y=0.2722, z=0.7559)>\n"
         "<Quaternion (w=0.7805, x=0.4835, y=0.2087, z=0.3369)>",
         '"rotation": [0.16907575, 0.75588035, -0.27217138, 0.57094753]\n'
@@ -41,7 +41,7 @@ EXAMPLES = {
         "w = 0.87851f; x = -0.24479f; y = -0.18215f; z = 0.36758f;",
         "(x: 342.77, y: 328.43, z: 50.31)",
     ),
-    "A camera of COLMAP, read into nerfstudio": (
+    "A COLMAP camera, read into nerfstudio": (
         "0.9205 0.3602 -0.0702 0.1343\n0.7011 -0.2150 0.5873 0.3421",
         "0.9541 0.1967 0.2260\n-0.2978 0.7044 0.6443\n-0.0325 -0.6820 0.7307\n"
         "0.0758 0.2272 -0.9709\n-0.7324 0.6734 0.1004\n0.6766 0.7035 0.2175",

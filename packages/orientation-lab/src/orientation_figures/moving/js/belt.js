@@ -20,7 +20,7 @@ export function render({ model, el }) {
       return (to) => turnTo(radians(Math.round(degrees(angle) + 1.5 * (to[1] - at[1]))));
     } });
   const redraw = onceAFrame(draw);
-  const angle = slider({ symbol: '$\\theta$', name: 'theta, turn of the plate', min: 0, max: 720, change: turnTo, more: () => '' });
+  const angle = slider({ symbol: '$\\theta$', name: 'theta, rotation of the plate', min: 0, max: 720, change: turnTo, more: () => '' });
   const passed = slider({ symbol: '', name: 'Belt passed round the plate', unit: 'per cent', sign: '%', factor: 0.01, min: 0, max: 100, more: () => '',
     change: (value) => { stop(); change(model, { passed: value }); } });
   const presets = [['No turn', 0], ['One full turn', 1], ['Two full turns', 2]].map(([name, turns]) => button(name, () => {

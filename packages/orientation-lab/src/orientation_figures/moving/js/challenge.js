@@ -44,7 +44,7 @@ export function render({ model, el }) {
   };
   const task = choice({ name: 'Challenge', options: [['match', 'match a matrix'], ['undo', 'undo three turns'], ['ghost', 'find the ghost’s axes']],
     change: (value) => begin(value, another(value)) });
-  const next = button('Another one', () => begin(state().task, another(state().task)));
+  const next = button('New challenge', () => begin(state().task, another(state().task)));
   const turns = AXES.map((axis, k) => button(`about ${A[k]}`, () => {
     const { task: now, given, turns: made } = state();
     change(model, { turns: [...made, [axis, now === 'ghost' ? given[made.length][1] : radians(30)]] });
@@ -60,13 +60,13 @@ export function render({ model, el }) {
     names: AXES.map((i) => AXES.map((j) => `${what} row ${i}, column ${j}`)), light: () => {} });
   const wanted = matrix('Matrix of the goal', 'goal,'), current = matrix('Matrix of the box', 'box,');
   const rest = element('span', { class: 'value' });
-  const bar = element('div', { class: 'bar', role: 'meter', 'aria-label': 'Remaining turn', 'aria-valuemin': '0', 'aria-valuemax': '180' }, element('span', {}));
+  const bar = element('div', { class: 'bar', role: 'meter', 'aria-label': 'Remaining rotation', 'aria-valuemin': '0', 'aria-valuemax': '180' }, element('span', {}));
   const text = liveText();
   open(el, stage(sheet, text),
     element('div', { class: 'controls' }, element('div', { class: 'row-of-controls' }, task.element, next),
       group('Turn the box', 'row-of-controls', element('span', {}, 'Turn'), ...turns, back, show), last.element, ghost.element),
     element('div', { class: 'readouts' }, readout(['The goal'], wanted.element), readout(['The box, ${}^A\\mathbf{C}^N$'], current.element),
-      readout(['Remaining turn', rest], bar)));
+      readout(['Remaining rotation', rest], bar)));
 
   function draw() {
     const { task: now, given, turns: made } = state();

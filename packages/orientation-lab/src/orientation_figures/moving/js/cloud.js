@@ -11,7 +11,7 @@ export function render({ model, el }) {
     change: (value) => change(model, { [trait]: value }) });
   const named = (name, control) => element('div', { class: 'named' }, element('span', { 'aria-hidden': 'true' }, name), control.element);
   const large = deviation('large', 'Error about z', 90), small = deviation('small', 'Error about x and y', 30);
-  const side = choice({ name: 'Errors along', options: [['ground', 'the ground'], ['body', 'the body']], change: (value) => change(model, { side: value }) });
+  const side = choice({ name: 'Errors about the axes of', options: [['ground', 'the ground'], ['body', 'the body']], change: (value) => change(model, { side: value }) });
   const text = liveText();
   open(el, stage(sheet, text), element('div', { class: 'controls' }, named('About z', large), named('About x, y', small), side.element));
 

@@ -34,7 +34,7 @@ export const sequencesOf = (side, programs) => programs[side.program]?.sequences
 // The orientation that the numbers in a text describe, and what was put right; a text that means none is an error.
 export function read(side, text) {
   const numbers = (decimalPoints(text).replace(MINUS, '-').match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
-  const commas = numbers.length > wanted && /\d,\d/.test(text) ? ' Write 0.5 for a half: a comma separates two numbers.' : '';
+  const commas = numbers.length > wanted && /\d,\d/.test(text) ? ' Write 0.5 for one half: a comma separates two numbers.' : '';
   if (numbers.length !== wanted) throw new Error(`There ${numbers.length === 1 ? 'is' : 'are'} ${several(numbers.length, 'number')} here, but ${side.form} needs ${wanted}.${commas}`);
   let dcm = null, said = '';
   if (side.form === 'matrix') {
@@ -80,7 +80,7 @@ export function told(side, orientation) {
 export function byAxesOf(source, target, programs, dcm) {
   const sides = [source, target].map(({ program }) => ({ program, ...programs[program] })), [one, other] = sides;
   const [body, world] = [0, 1].map((k) => (one.axes?.[k] && other.axes?.[k] ? multiply(other.axes[k], transpose(one.axes[k])) : IDENTITY));
-  if (determinant(body) !== determinant(world)) return { dcm, said: 'The axes of one of the worlds are unknown, so none are exchanged.' };
+  if (determinant(body) !== determinant(world)) return { dcm, said: 'The axes of one of the world frames are unknown, so none are exchanged.' };
   return { dcm: multiply(body, dcm, transpose(world)),
     said: body === world ? '' : `x, y, z point ${sides.map((side) => `${side.body.join(', ')} in ${side.program}`).join('; ')}.` };
 }
@@ -132,7 +132,7 @@ export function render({ model, el }) {
   const code = element('output', { class: 'result', 'aria-label': 'Line of code' });
   const copy = button('Copy the line', async () => {
     await navigator.clipboard.writeText(`${code.textContent}\n`);
-    words.say('The line is copied.');
+    words.say('Line copied.');
   });
   const swap = button('Exchange the two sides', () => {
     const [from, to] = [model.get('source'), model.get('target')];
@@ -256,9 +256,9 @@ function note(to, numbers, programs) {
   const angles = to.unit === 'degrees' ? numbers.map(radians) : numbers;
   if (to.form === ANGLES[0] && gimbalLockMargin(angles, to.sequence) < 1e-6
     || to.form === ANGLES[1] && gimbalLockMargin(reversed(angles), reversed(to.sequence).join('')) < 1e-6) {
-    return 'This is gimbal lock: the first and the last angle could share this rotation in any other way.';
+    return 'This is gimbal lock: the first and the last angle could share this rotation between them in any other way.';
   }
   const version = programs[to.program]?.version;
   const means = { matrix: `the matrix is ${to.matrix}`, quaternion: `the scalar comes ${to.scalar}` }[to.form] ?? `the numbers are in ${to.unit}`;
-  return `For ${to.program}${version ? ` (tried: ${version})` : ''} ${means}.`;
+  return `For ${to.program}${version ? ` (tested: ${version})` : ''} ${means}.`;
 }

@@ -6,7 +6,7 @@ const SYMBOLS = ['$\\psi$', '$\\theta$', '$\\varphi$'], NAMES = ['psi', 'theta',
 export function render({ model, el }) {
   const sequence = choice({ name: 'Sequence', options: model.get('sequences').map((one) => [one, [...one].join('-')]),
     change: (value) => change(model, { sequence: value }) });
-  const fixed = choice({ name: 'Turns are', options: [['body', 'body fixed'], ['space', 'space fixed']],
+  const fixed = choice({ name: 'Rotations are', options: [['body', 'body fixed'], ['space', 'space fixed']],
     change: (value) => change(model, { fixed: value }) });
   const fields = SYMBOLS.map((symbol, k) => {
     const field = element('input', { type: 'text', 'aria-label': `${NAMES[k]}: a symbol or radians`, spellcheck: 'false',
@@ -15,7 +15,7 @@ export function render({ model, el }) {
       } });
     return { field, element: element('label', { class: 'choice' }, element('span', { 'aria-hidden': 'true' }, symbol), field) };
   });
-  const result = element('div', { class: 'formulas', tabindex: '0', role: 'group', 'aria-label': 'Factors, product, and what lock leaves' });
+  const result = element('div', { class: 'formulas', tabindex: '0', role: 'group', 'aria-label': 'Factors, product, and product at gimbal lock' });
   const text = liveText();
   open(el, element('div', { class: 'controls alone' },
     group('What is turned', 'row-of-controls', sequence.element, fixed.element),

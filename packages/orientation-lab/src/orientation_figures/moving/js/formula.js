@@ -20,7 +20,7 @@ export function render({ el }) {
   let formula;
   el.append(colours());
   open(el, element('div', { class: 'controls alone' },
-    group('What is taken away', 'row-of-controls', names, language.element, ...Object.values(lists).map((list) => list.element)),
+    group('Formula to copy', 'row-of-controls', names, language.element, ...Object.values(lists).map((list) => list.element)),
     box.element, said.element));
 
   async function draw() {

@@ -14,7 +14,7 @@ export function render({ model, el }) {
     const first = model.get('steel');
     return (to) => setSteel(first + (to[0] - at[0]) / 15);
   } });
-  sheet.svg.setAttribute('aria-label', 'The error of the heading over time, in degrees, for five walks past a car. '
+  sheet.svg.setAttribute('aria-label', 'The heading error over time, in degrees, for five walks past a car. '
     + 'The arrow keys change the steel.');
   // A plot has one view: the keys and a finger move the steel instead.
   sheet.look = () => {};
@@ -27,7 +27,7 @@ export function render({ model, el }) {
   const redraw = onceAFrame(draw);
   const steel = slider({ symbol: '', name: 'Steel of the car', unit: 'microtesla', sign: ' µT', factor: 1, min: 0, max: 12, step: 2,
     more: () => '', change: setSteel });
-  const gate = choice({ name: 'Share of honest measurements that the gate rejects', options: rejected.map((share) => [share, share ? percent(share) : 'none: no gate']),
+  const gate = choice({ name: 'Share of good measurements that the gate rejects', options: rejected.map((share) => [share, share ? percent(share) : 'none: no gate']),
     change: (value) => change(model, { gate: Number(value) }) });
   const text = liveText();
   open(el, stage(sheet, text), element('div', { class: 'controls' },

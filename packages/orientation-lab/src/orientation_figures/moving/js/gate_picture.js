@@ -32,7 +32,7 @@ export function picture(sheet, curves) {
     sheet.label(origin, words, 'muted', [across(time), BOTTOM + 14], 14);
   }
   sheet.label(origin, '$t\\ \\mathrm{(s)}$', 'ink', [across(44), BOTTOM + 16], 16);
-  sheet.label(origin, '$\\mathrm{error\\ of\\ the\\ heading\\ (degrees)}$', 'ink', [0, TOP - 16], 16);
+  sheet.label(origin, '$\\mathrm{heading\\ error\\ (degrees)}$', 'ink', [0, TOP - 16], 16);
   sheet.layer = 1;
   for (const curve of curves) {
     const points = enumerate(curve).map(([second, error]) => [across(FIRST + second), down(error)]);

@@ -116,7 +116,7 @@ function situation(axes, margin, apart) {
   }
   return 'Gimbal lock: $\\psi$ and $\\varphi$ turn the camera about the same line, '
     + (dot(axes[0], axes[2]) > 0 ? 'the same way' : 'opposite ways')
-    + `. Trade one for the other and the camera stands still. One way of turning is lost.`;
+    + `. Trade one for the other and the camera stands still. One degree of freedom is lost.`;
 }
 
 // Points at which the rings and the camera can be held.

@@ -33,7 +33,7 @@ export function render({ model, el }) {
   const adders = LETTERS.split('').map((letter) => button(letter, () => {
     chosen = LETTERS.slice(1).split('').find((letter) => !edges().some(([made]) => made === letter));
     change(model, { edges: [...edges(), [chosen, letter, 'y', radians(30)]] });
-  }, { 'aria-label': `add a frame turned in ${letter}` }));
+  }, { 'aria-label': `add a frame with reference frame ${letter}` }));
   const fewer = button('Remove the last', () => {
     const [gone] = edges().at(-1), end = (name) => (model.get(name) === gone ? 'N' : model.get(name));
     change(model, { target: end('target'), source: end('source') });
@@ -81,7 +81,7 @@ export function render({ model, el }) {
 
 // Factors that are walked against the way they were made are transposes.
 function sentence(to, from, path, made) {
-  if (to === from) return 'A frame in itself: the identity. Choose two different frames.';
+  if (to === from) return 'A frame relative to itself: the identity. Choose two different frames.';
   const factors = path.slice(1).map((name, k) => dcmName(path[k], name)).join(' ');
   const back = made.filter(([name, parent]) => path.indexOf(name) > path.indexOf(parent)).map(([name, parent]) => dcmName(parent, name));
   return `${dcmName(to, from)} = ${factors}, over the path from $${from}$ to $${to}$. ${

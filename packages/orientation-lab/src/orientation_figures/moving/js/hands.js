@@ -51,7 +51,7 @@ export function render({ model, el }) {
   const text = liveText();
   open(el, stage(sheet, text),
     element('div', { class: 'controls' }, group('What is turned', 'row-of-controls', ...images, over), ...turns, group('Let two arrows fit', 'row-of-controls', ...fits)),
-    element('div', { class: 'readouts' }, readout(['How far each arrow is from its namesake'], table.element),
+    element('div', { class: 'readouts' }, readout(['Angle between arrows of the same name'], table.element),
       readout(['First × second · third'], hand)));
 
   function draw() {
@@ -82,7 +82,7 @@ function sentence(image, angles) {
   if (count === 3) return 'All three arrows fit: the copy is $N$ again. Every right-handed triad can be turned onto every other.';
   if (count === 2) {
     const k = fit.indexOf(false);
-    return `Two arrows fit, and ${M[k]} points the wrong way, ${plain(angles[k], 0)}° from ${N[k]}. Whichever two you choose, it is always so.`;
+    return `Two arrows fit, and ${M[k]} points the wrong way, ${plain(angles[k], 0)}° from ${N[k]}. It is the same whichever two you choose.`;
   }
   return image === 'mirror' ? 'Turn the mirror image until its arrows lie along those of $N$. How many of them can fit at once?'
     : 'The copy has been turned, not mirrored. Can you bring all three arrows home?';

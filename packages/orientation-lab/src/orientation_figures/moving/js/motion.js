@@ -262,7 +262,7 @@ export function render({ model, el }) {
       moment.mark(refused ? 'refused' : '');
     });
     AXES.forEach((about, k) => write(ranks[k], `${about} (${rank(settings.moments, k)})`));
-    writeWords(aside, `Dashed: the reference, with steps ten times finer, whose angular velocity every description is given. The arrow $\\mathbf{H}$ is the angular momentum of the ${body}, which keeps its direction.`);
+    writeWords(aside, `Dashed: the reference, computed with steps ten times finer. Every description uses its angular velocity. The arrow $\\mathbf{H}$ is the angular momentum of the ${body}, which keeps its direction.`);
     axis.show(settings.axis);
     method.show(settings.method);
     step.show(settings.step);
@@ -286,7 +286,7 @@ export function render({ model, el }) {
     const now = (run.step * k).toFixed(1), count = run.flips.filter((flip) => flip <= k).length;
     const begin = `After ${now} s the ${what} ${often(count, middle)}. `;
     if (run.ended && k === run.last) {
-      return `${begin}Here the run ends: the computed numbers have exceeded ten thousand. ${how === 'Euler' ? 'Euler’s' : 'This'} method needs smaller steps.`;
+      return `${begin}The run ends here, because the computed numbers have exceeded ten thousand. ${how === 'Euler' ? 'Euler’s' : 'This'} method needs smaller steps.`;
     }
     if (name === 'angles') {
       return `${begin}The Euler angles always give a valid orientation. It is wrong by ${power(wrong)} rad, and ${Math.round(run.marginAt(k))}° from gimbal lock.`;
@@ -295,7 +295,7 @@ export function render({ model, el }) {
     if (valid) return `${begin}${title} is restored after every step and stays orthogonal, but the orientation is wrong by ${power(wrong)} rad.`;
     const lengths = matrix.map(length), worst = lengths.map((far) => Math.abs(Math.log(far))), far = worst.indexOf(Math.max(...worst));
     const seen = worst[far] > 0.02 ? `: its unit vector $\\hat{a}_${AXES[far]}$ is ${lengths[far].toPrecision(3)} long` : '';
-    return `${begin}${title}, not restored, is not orthogonal by ${power(faulty)}${seen}. The orientation is wrong by ${power(wrong)} rad.`;
+    return `${begin}${title}, not restored, departs from orthogonality by ${power(faulty)}${seen}. The orientation is wrong by ${power(wrong)} rad.`;
   }
 
   function curves(drawn, k) {

@@ -104,16 +104,16 @@ export function render({ model, el }) {
   const save = element('a', { class: 'button', download: 'phone.csv' }, 'Download phone.csv'); // there when it leads somewhere
   const copy = button('Copy for a cell', async () => {
     await navigator.clipboard.writeText(`phone = '''${file}'''\n`);
-    text.say('Copied. Paste it into a cell, and phone will be the text of the file.');
+    text.say('Copied. Paste it into a cell, and phone will contain the text of the file.');
   }, { hidden: '' });
   const light = () => {};   // these numbers mean what their headings say
   const matrix = numberTable({ name: 'Direction cosine matrix of the phone with respect to the ground', kind: 'bracket', rows: B, columns: N,
     names: AXES.map((i) => AXES.map((j) => `b ${i} dot n ${j}`)), light });
   const quaternion = numberTable({ name: 'Quaternion, scalar first', columns: ['$q_0$', '$q_i$', '$q_j$', '$q_k$'],
     names: [['q 0', 'q i', 'q j', 'q k']], light });
-  const felt = numberTable({ name: 'Specific force along the phone, in metres per second squared', columns: B,
+  const felt = numberTable({ name: 'Specific force along the axes of the phone, in metres per second squared', columns: B,
     names: [['force b x', 'force b y', 'force b z']], light });
-  const turning = numberTable({ name: 'Angular velocity along the phone, in degrees per second', columns: B,
+  const turning = numberTable({ name: 'Angular velocity along the axes of the phone, in degrees per second', columns: B,
     names: [['rate b x', 'rate b y', 'rate b z']], light });
   const text = liveText();
   open(el, stage(sheet, text),
@@ -139,7 +139,7 @@ export function render({ model, el }) {
     setTimeout(() => {
       if (alive) return;
       text.say(window.isSecureContext ? 'No sensor responds on this device: play the recording instead, or open this page on a phone.'
-        : 'Browsers give sensors only to pages that came over a secure connection: play the recording instead.');
+        : 'Browsers let only pages with a secure connection use the sensors: play the recording instead.');
     }, PATIENCE);
   }
 
@@ -186,10 +186,10 @@ export function render({ model, el }) {
 
   function say() {
     if (recording) { text.say(`Recording for ${RECORD_SECONDS} seconds: turn the phone.`); return; }
-    if (file) { text.say(`${rows.length} samples are kept on this page, and nowhere else.`); return; }
+    if (file) { text.say(`${rows.length} samples are stored on this page, and nowhere else.`); return; }
     if (alive) {
-      text.say(sensors.north === null ? 'The phone is followed. Its $\\hat{n}_y$ is where it pointed at first: no compass answers.'
-        : 'The phone is followed; $\\hat{n}_y$ is magnetic north.');
+      text.say(sensors.north === null ? 'The figure follows your phone. There is no compass, so $\\hat{n}_y$ is the direction it first pointed in.'
+        : 'The figure follows your phone. $\\hat{n}_y$ is magnetic north.');
     }
   }
 

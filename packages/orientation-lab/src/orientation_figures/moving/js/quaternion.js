@@ -92,7 +92,7 @@ function doubleView(model) {
     element('div', { class: 'controls' }, angle.element, element('div', { class: 'row-of-controls' }, once, back),
       group('Axis', 'row-of-controls', element('span', { class: 'symbol', 'aria-hidden': 'true' }, '$\\hat{e}$'),
         ...fields.map((field) => field.element), ...presets)),
-    element('div', { class: 'readouts' }, readout([more ? 'Two quaternions of one orientation' : 'The quaternion of the turn'], quaternions.element),
+    element('div', { class: 'readouts' }, readout([more ? 'Two quaternions of one orientation' : 'The quaternion of the rotation'], quaternions.element),
       ...(more ? [readout(['${}^A\\mathbf{C}^N$, from either of them'], matrix.element)] : []))];
 
   self.draw = () => {
@@ -171,7 +171,7 @@ function wayView(model) {
   const angles = ['psi', 'theta', 'phi'].map((name, k) => slider({ symbol: `$\\${name === 'phi' ? 'varphi' : name}$`, name,
     change: (value) => change(model, { [edited]: model.get(edited).map((old, n) => (n === k ? value : old)) }) }));
   const tip = choice({ name: 'Follow the unit vector', options: AXES, change: (value) => change(model, { unit_vector: value }) });
-  const way = player({ name: 'Time on the way', seconds: SECONDS, show: (time) => change(model, { share: time / SECONDS }) });
+  const way = player({ name: 'Time along the way', seconds: SECONDS, show: (time) => change(model, { share: time / SECONDS }) });
   const table = numberTable({ name: 'The three ways', kind: 'ways', rows: ['$C$ slerp', '$D$ Euler angles', '$E$ matrix entries'],
     columns: ['turned', 'speed'], names: ['C, slerp', 'D, Euler angles', 'E, matrix entries'].map((name) => ['turned from A by', 'speed'].map(
       (what) => `${name}, ${what}`)), light: () => {} });
@@ -228,7 +228,7 @@ function slowestAndFastest(way) {
 
 function wayText({ angle, speeds, range }, [slerped, , repaired], sizes) {
   if (!slerped) return '$A$ and $B$ are half a turn apart: both ways round are equally long, and slerp has no shorter one to take.';
-  if (!repaired) return 'The blended entries are as near to one orientation as to another: no matrix is the nearest to them.';
+  if (!repaired) return 'The blended entries are equally near to several orientations: no matrix is the nearest.';
   const [slow, fast] = range.map(degrees), short = Math.min(...sizes);
   const [, , beyond] = plotted(speeds);
   const way = speeds[1].reduce((sum, speed) => sum + speed, 0) * SECONDS / SAMPLES;

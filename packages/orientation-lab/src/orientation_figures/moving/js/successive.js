@@ -36,7 +36,7 @@ export function render({ model, el }) {
       const turns = [...state().turns];
       [turns[k], turns[k + 1]] = [turns[k + 1], turns[k]];
       change(model, { turns, compare: PAIRS[k] });
-    }, { class: 'exchange', 'aria-label': `Exchange turns ${k + 1} and ${k + 2}` })];
+    }, { class: 'exchange', 'aria-label': `Swap rotations ${k + 1} and ${k + 2}` })];
     return { axis, angle, exchange, element: group(`Turn ${k + 1}`, 'turn-of-chain', axis.element, angle.element, ...exchange) };
   });
   const more = button('Add a turn', () => {
@@ -140,11 +140,11 @@ function sentence(end, kind, dcm, compare, otherDcm, lit, more) {
   if (!otherDcm) {
     return (kind === 'body' ? `Each turn is about an axis of the frame before it${more ? ' (body fixed)' : ''}. `
       : 'Each turn is about an axis of $N$ (space fixed). ')
-      + (angle < 1e-9 ? end === 'N' ? 'No turn has been made yet: press Play.' : `Together the turns so far bring $${end}$ to where $N$ is.` : `From $N$ to $${end}$ they are one turn of ${angleText(angle)} about (${
+      + (angle < 1e-9 ? end === 'N' ? 'No rotation has been made yet: press Play.' : `Together the rotations so far bring $${end}$ to where $N$ is.` : `From $N$ to $${end}$ they are one rotation of ${angleText(angle)} about (${
         axis.map((entry) => fixed(entry, 2).trim()).join(', ')}).`);
   }
   const apart = axisAngleFromDcm(multiply(otherDcm, transpose(dcm)))[1];
   const what = compare === OTHER ? `The same turns, ${kind === 'body' ? 'space' : 'body'} fixed, lead` : `With turns ${compare} the chain leads`;
   return apart < 1e-7 ? `${what} to the same orientation: here $E$ is where $${end}$ is.`
-    : `${what} to $E$ instead of $${end}$. The two differ by a turn of ${angleText(apart)}.`;
+    : `${what} to $E$ instead of $${end}$. The two differ by a rotation of ${angleText(apart)}.`;
 }

@@ -43,7 +43,7 @@ export function textBox(say) {
   const text = element('output', { class: 'result code', 'aria-label': 'Formula', tabindex: '0' });
   const copy = button('Copy the formula', async () => {
     await navigator.clipboard.writeText(`${text.textContent}\n`);
-    say('The formula is copied.');
+    say('Formula copied.');
   });
   const save = button('Save as a file', () => {
     const address = URL.createObjectURL(new Blob([`${text.textContent}\n`], { type: 'text/plain' }));

@@ -114,11 +114,11 @@ const MEANINGS = {
     const before = turns.slice(0, k).reduce((frame, turn) => multiply(turn, frame), IDENTITY);
     const after = multiply(turns[k], before), axis = before[AXES.indexOf(sequence[k])];
     const margin = gimbalLockMargin(euler, sequence);
-    const about = [`${N[AXES.indexOf(sequence[0])]}`, `the ${sequence[1]} unit vector, as the first turn has left it`,
-      `${A[AXES.indexOf(sequence[2])]}, which the first two turns have put in its place`][k];
+    const about = [`${N[AXES.indexOf(sequence[0])]}`, `the ${sequence[1]} unit vector, as the first rotation left it`,
+      `${A[AXES.indexOf(sequence[2])]}, where the first two rotations put it`][k];
     return {
-      words: `${ANGLES[k]} = ${inDegrees(euler[k])}: the ${['first', 'second', 'third'][k]} turn, about ${about}.`
-        + (margin < radians(1) ? ' Here this sequence is at gimbal lock: the first and the third turn have the same axis.' : ''),
+      words: `${ANGLES[k]} = ${inDegrees(euler[k])}: the ${['first', 'second', 'third'][k]} rotation, about ${about}.`
+        + (margin < radians(1) ? ' Here this sequence is at gimbal lock: the first and the third rotation have the same axis.' : ''),
       draw(sheet) {
         const frame = (rows, letter) => (letter ? sheet.triad(letter, rows, { length: letter === 'N' ? REACH : 1 })
           : rows.forEach((row) => sheet.arrow(row, { colour: 'muted' })));
@@ -135,12 +135,12 @@ const MEANINGS = {
 
   axis({ axis, angle }, _, k) {
     if (k === 3) {
-      return { words: `$\\theta$ = ${inDegrees(angle)}: the angle of the one turn about $\\hat{e}$ that brings $N$ to $A$.`,
+      return { words: `$\\theta$ = ${inDegrees(angle)}: the angle of the one rotation about $\\hat{e}$ that brings $N$ to $A$.`,
         draw: (sheet) => angleAbout(sheet, axis, angle, '$\\theta$') };
     }
     return {
-      words: `$e_${AXES[k]}$ = ${number(axis[k])}: the shadow of $\\hat{e}$ on the line of ${N[k]}. On the line of ${A[k]} it is as `
-        + 'long, because the turn leaves its own axis where it is.',
+      words: `$e_${AXES[k]}$ = ${number(axis[k])}: the shadow of $\\hat{e}$ on the line of ${N[k]}. On the line of ${A[k]} it is `
+        + 'equally long, because the rotation leaves its own axis where it is.',
       draw(sheet) {
         sheet.arrow(scale(REACH, IDENTITY[k]), { colour: 'N', label: N[k] });
         sheet.arrow(axis, { colour: 'accent' });

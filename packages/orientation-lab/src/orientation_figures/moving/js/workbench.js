@@ -73,16 +73,16 @@ export function render({ model, el }) {
       for (const side of sides) side.field.blur();
       change(model, { first, second, noise: 0, first_is: firstIs, second_is: secondIs });
     } });
-  const noise = numberField({ name: 'They may differ by, in degrees', step: 0.5, min: 0, max: 30, change: (value) => change(model, { noise: value }) });
+  const noise = numberField({ name: 'Tolerance in degrees', step: 0.5, min: 0, max: 30, change: (value) => change(model, { noise: value }) });
   const verdict = element('div', { class: 'controls answer' });
   const code = element('output', { class: 'result', 'aria-label': 'The line that fixes it' });
   const language = choice({ name: 'Language of the line', options: Object.keys(LANGUAGES).map((name) => [name, name]), hidden: true, change: () => mended() });
   const mend = group('The line that fixes it', 'controls line', element('div', { class: 'row-of-controls' }, element('div', { class: 'title' }, 'The line that fixes it'),
     language.element, button('Copy the line', async () => {
       await navigator.clipboard.writeText(`${code.textContent}\n`);
-      words.say('The line is copied.');
+      words.say('Line copied.');
     })), code);
-  const post = button('Copy an address that carries this case', async () => {
+  const post = button('Copy the address of this case', async () => {
     try {
       const content = Object.fromEntries(STATE.map((name) => [name, model.get(name)]));
       await navigator.clipboard.writeText(location.href.split('#')[0] + fragmentOf(PLACE, content));
@@ -92,7 +92,7 @@ export function render({ model, el }) {
     }
   });
   open(el, stage(sheet, words), element('div', { class: 'across' },
-    readout(['On the left what the first program means, ${}^A\\mathbf{C}^N$; on the right the second, ${}^B\\mathbf{C}^N$'])),
+    readout(['Left: the orientation that the first program means, ${}^A\\mathbf{C}^N$. Right: the second, ${}^B\\mathbf{C}^N$'])),
   element('div', { class: 'controls case' }, example.element),
   element('div', { class: 'controls converter' }, sides[0].box, sides[1].box), verdict, mend,
   element('div', { class: 'controls' }, element('div', { class: 'row-of-controls case' },
@@ -210,7 +210,7 @@ function answer(found, table, declare) {
   }
   if (found.names.length) {
     const told = ({ condition, faults, declare: known }) => [`${condition ? `If ${condition}: ` : ''}${faults.join('; ')}. `,
-      ...(Object.keys(known[0]).length + Object.keys(known[1]).length ? [button('So it is', () => declare(known))] : [])];
+      ...(Object.keys(known[0]).length + Object.keys(known[1]).length ? [button('That is so', () => declare(known))] : [])];
     return [element('p', { class: 'heading' }, ONE_QUESTION), element('p', {}, found.question), element('ul', {}, ...found.names.map((name) => element('li', {}, ...told(name))),
       element('li', {}, table.none))];
   }

@@ -21,8 +21,8 @@ def picture(sheet, dcm, ghost=None):
 
 _TASKS = {
     "match": "Turn the box until it has a given matrix. The goal is not shown.",
-    "undo": "The box has been turned. Turn it back until its triad lies on the triad of N.",
-    "ghost": "A second box, E, shows the result of three turns of a ghost. Find their axes.",
+    "undo": "The box has been turned. Turn it back until its triad coincides with that of N.",
+    "ghost": "A second box, E, shows where a ghost's three rotations end. Find their axes.",
 }
 
 
@@ -35,7 +35,7 @@ def drawing(figure, Sheet):
         "A box with the triad of A, and from the same origin the triad of N. "
         f"{_TASKS[figure.task]} Along N, the unit vectors of A are "
         f"{', '.join(rows).replace('-0.00', '0.00')}. "
-        f"A turn of {in_degrees(figure.remaining)} remains.",
+        f"A rotation of {in_degrees(figure.remaining)} remains.",
         scale=SIZE,
     )
     return sheet.paint(picture, figure.dcm, figure.goal if figure.task == "ghost" else None)

@@ -66,8 +66,8 @@ def drawing(figure, Sheet):
         f"A sphere with the tips of the unit vectors b x and b z of {COUNT} orientations. Their "
         f"errors are {in_degrees(figure.large)} about {frame}, and "
         f"{in_degrees(figure.small)} about each axis perpendicular to it (standard "
-        "deviations). The tips lie along arcs about this axis and form bent clouds. The mean of "
-        f"the vectors b x has the length {figure.mean_length:.2f}, inside the sphere. The arrows "
+        "deviations). The tips lie along arcs about this axis and form curved clouds. The mean of "
+        f"the vectors b x has length {figure.mean_length:.2f}, inside the sphere. The arrows "
         "b x and b z show the estimate, and the triad N the ground.",
         scale=SIZE,
     )

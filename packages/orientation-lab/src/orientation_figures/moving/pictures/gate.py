@@ -32,7 +32,7 @@ def picture(sheet, curves):
         sheet.path("ML", [[across(time), TOP], [across(time), BOTTOM]], "faint muted")
         sheet.label(origin, words, "muted", [across(time), BOTTOM + 14], 14)
     sheet.label(origin, r"$t\ \mathrm{(s)}$", "ink", [across(44), BOTTOM + 16], 16)
-    sheet.label(origin, r"$\mathrm{error\ of\ the\ heading\ (degrees)}$", "ink", [0, TOP - 16], 16)
+    sheet.label(origin, r"$\mathrm{heading\ error\ (degrees)}$", "ink", [0, TOP - 16], 16)
     sheet.layer = 1
     for curve in curves:
         points = [[across(FIRST + second), down(error)] for second, error in enumerate(curve)]

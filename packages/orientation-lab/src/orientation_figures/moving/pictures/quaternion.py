@@ -206,16 +206,16 @@ def _ways(figure, Sheet):
         f", cut off at {highest} degrees per second (the highest is {beyond:.0f})" if beyond else ""
     )
     sheet = Sheet(
-        f"A sphere with the paths of the tip of a unit vector {figure.unit_vector} along three "
-        f"ways from A to B, which are {in_degrees(angle_between(*ends))} apart. "
-        "C moves by slerp, a turn about one axis at constant speed. D moves by interpolated Euler "
+        f"A sphere with three paths of the tip of a unit vector {figure.unit_vector} "
+        f"from A to B, which are {in_degrees(angle_between(*ends))} apart. "
+        "C moves by slerp, about one axis at constant speed. D moves by interpolated Euler "
         "angles z-x-y. E moves by interpolated matrix entries, each time restored to the nearest "
         "valid matrix, on the same path as C but at a different speed. "
         "A straight dashed line inside the sphere shows the blended entries before they are "
         "repaired. "
         f"After {figure.share * SECONDS:.1f} of {SECONDS} seconds, as shown, the speeds of C, D "
         f"and E are {now[0]}, {now[1]} and {now[2]} degrees per second, and the blended rows have "
-        f"the lengths {', '.join(f'{size:.2f}' for size in map(length, raw))}. "
+        f"lengths {', '.join(f'{size:.2f}' for size in map(length, raw))}. "
         f"Below are the three speeds over time{cut}.",
         scale=BALL,
     )

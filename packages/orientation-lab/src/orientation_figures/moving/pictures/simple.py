@@ -29,7 +29,7 @@ def drawing(figure, Sheet):
         for name, row in zip("xyz", figure.dcm, strict=True)
     ]
     sheet = Sheet(
-        "The triads of the frames N and A from one origin, and a weather vane that belongs to A. "
+        "The triads of the frames N and A, drawn from one origin, and a weather vane fixed to A. "
         f"The frames share {figure.axis}, and A is turned about it through theta, "
         f"{in_degrees(figure.angle)}. "
         f"Along N, {', '.join(rows)}.",

@@ -115,10 +115,10 @@ def _words(figure, now, frames):
     ]
     end = LETTERS[len(now)]
     words = (
-        f"The triads of the frames {', '.join(LETTERS[: len(now) + 1])} from one origin. Below "
-        "them each frame is drawn by itself, in order, with a small box that turns with it. "
+        f"The triads of the frames {', '.join(LETTERS[: len(now) + 1])}, drawn from one origin. "
+        "Below them each frame is drawn by itself, in order, with a small box that turns with it. "
     )
-    words += f"{steps}. " if steps else "No turn has been made yet. "
+    words += f"{steps}. " if steps else "No rotation has been made yet. "
     words += f"Along N, the unit vectors of {end} are {', '.join(rows)}."
     if figure.compare != "nothing":
         kind = (
@@ -127,7 +127,7 @@ def _words(figure, now, frames):
             else f"with turns {figure.compare}"
         )
         words += (
-            f" A second chain, {kind}, ends in the frame E. The two results differ by a turn of "
-            f"{math.degrees(figure.angle_between):.1f} degrees."
+            f" A second chain, {kind}, ends in the frame E. The two results differ by a "
+            f"rotation of {math.degrees(figure.angle_between):.1f} degrees."
         )
     return words

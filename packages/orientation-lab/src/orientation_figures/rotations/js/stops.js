@@ -44,7 +44,7 @@ export const STOPS = [
     before: 'A flat cable runs from the camera to the wall. The camera begins to turn about its line of sight.',
     after: 'After two turns the cable has been passed round the camera, which did not move, and it is flat.' },
   { id: 'between-poses', machine: 0.06, camera: 1, A: 0, D: 0, still: 0.5, dials: ['part'], by: 'camera',
-    before: 'Two poses, 0 and 1. A blue camera makes one steady turn between them. A red ghost changes its three angles at constant rates.',
+    before: 'Two poses, 0 and 1. A blue camera makes one steady rotation between them. A red ghost changes its three angles at constant rates.',
     after: 'Both have arrived. The red path was a detour, on which the camera turned further.' },
   { id: 'it-moves', machine: 0.07, camera: 1, A: 0, D: 0, still: 0.9, dials: ['time'], by: 'camera',
     before: 'A tumbling camera, and a red ghost that adds up the readings of a gyroscope.',

@@ -18,7 +18,7 @@ const DIALS = {
   psi: ['first motor', -180, 180, 1, DEGREES, '°', 0], theta: ['second motor', -180, 180, 1, DEGREES, '°', 1], phi: ['third motor', -180, 180, 1, DEGREES, '°', 2],
   away: ['carry the camera across', 0, 100, 1, 100, '%'], part: ['share of the way', 0, 100, 1, 100, '%'],
   together: ['both mirrors together', 0, 55, 1, 55, '°'], apart: ['mirrors apart', 35, 65, 1, 30, '°', null, 35],
-  whole: ['turn of the camera', 0, 720, 1, DEGREES, '°'], turn: ['turn of the camera', 0, 720, 1, DEGREES, '°'],
+  whole: ['rotation of the camera', 0, 720, 1, DEGREES, '°'], turn: ['rotation of the camera', 0, 720, 1, DEGREES, '°'],
   passed: ['pass the cable round', 0, 100, 1, 100, '%'], time: ['time', 0, LASTS, 0.1, 1, ' s'],
 };
 const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time'];
@@ -52,8 +52,8 @@ class World {
 
   build() {
     this.canvas = element('canvas', { tabindex: '0', role: 'application', 'aria-roledescription': 'camera gimbal',
-      'aria-label': 'A camera gimbal. The arrow keys turn the camera, comma and full stop roll it, with Shift the arrow keys turn '
-        + 'the view, Home gives it back to the text.', 'data-lm-suppress-shortcuts': 'true' });
+      'aria-label': 'A camera gimbal. The arrow keys turn the camera, comma and full stop roll it. With Shift the arrow keys turn '
+        + 'the view, and Home gives the camera back to the text.', 'data-lm-suppress-shortcuts': 'true' });
     this.names = element('div', { class: 'names', 'aria-hidden': 'true' });
     this.seen = element('p', { class: 'look', 'aria-hidden': 'true' });
     this.heard = element('p', { class: 'unseen', role: 'status' });
@@ -312,12 +312,12 @@ class World {
         return margin < deg(1) ? `${look} Locked: the first and the third motor turn about one line.`
           : `${look} The axes of the first and the third motor are ${say(margin < PI / 2 ? margin : PI - margin)} apart.`;
       },
-      'one-turn': () => `${look} From here, one turn of ${say(axisOf(state.start)[1] * (1 - state.part))} leads home.`,
-      'two-mirrors': () => `The mirrors stand ${say(deg(35 + 30 * state.apart))} apart, and the arrow has turned ${say(deg(70 + 60 * state.apart))}.`,
-      'four-numbers': () => `Turned ${say(state.whole)}: the point stands at ${say(state.whole / 2)}.`,
+      'one-turn': () => `${look} From here, one rotation of ${say(axisOf(state.start)[1] * (1 - state.part))} leads home.`,
+      'two-mirrors': () => `The mirrors are ${say(deg(35 + 30 * state.apart))} apart, and the arrow has turned ${say(deg(70 + 60 * state.apart))}.`,
+      'four-numbers': () => `Turned ${say(state.whole)}: the point is at ${say(state.whole / 2)}.`,
       'not-home': () => this.cable(),
       'between-poses': () => this.way(D),
-      'it-moves': () => (state.free ? look : `After ${state.time.toFixed(1)} seconds the small turns that the instrument added up are ${say(apart(D, motion(state.time, state.thrown).told))} off.`),
+      'it-moves': () => (state.free ? look : `After ${state.time.toFixed(1)} seconds the small rotations that the instrument added up are ${say(apart(D, motion(state.time, state.thrown).told))} off.`),
     }[state.stop];
     const held = this.phoneWords ?? (more ? more() : look);
     return held.replaceAll('-0.00', '0.00').replace(/-(?=\d)/g, '\u2212');
@@ -334,7 +334,7 @@ class World {
     const whole = [0, 1, 2].find((count) => Math.abs(turns - count) < 0.01);
     if (whole === undefined) return `The camera has turned ${say(turn)}, and the cable has followed.`;
     if (whole === 0) return 'The camera is as it was, and the cable is flat.';
-    if (passed < 0.02) return `After ${whole === 1 ? 'one turn' : 'two turns'} the camera is as it was. The cable is not: it contains ${whole === 1 ? 'one turn' : 'two turns'}.`;
+    if (passed < 0.02) return `After ${whole === 1 ? 'one turn' : 'two turns'} the camera is as it was. The cable is not: it is twisted by ${whole === 1 ? 'one turn' : 'two turns'}.`;
     if (passed < 0.98) return 'The camera stands still while the cable is passed round it.';
     return whole === 1 ? 'Passed round: the twist is still there, the other way. It will not go away.' : 'Passed round: the cable is flat. Two turns are none.';
   }
@@ -342,10 +342,10 @@ class World {
   way(D) {
     const needed = this.needed ??= ['one', 'angles'].map((kind) => turnedAlong(wholeWays().map((both) => both[kind])));
     const { track, free } = this.state;
-    if (!free) return `The single turn takes ${say(needed[0])}. The red path, in angles, turns the camera through ${say(needed[1])} in all.`;
+    if (!free) return `The single rotation takes ${say(needed[0])}. The red path, in angles, turns the camera through ${say(needed[1])} in all.`;
     const left = apart(D, frames(TO).D), taken = turnedAlong(track);
     if (left > deg(15)) return `Your path so far: ${say(taken)}. Pose 1 is ${say(left)} away.`;
-    return `Your path: ${say(taken + left)}. The single turn: ${say(needed[0])}. In angles: ${say(needed[1])}.`;
+    return `Your path: ${say(taken + left)}. The single rotation: ${say(needed[0])}. In angles: ${say(needed[1])}.`;
   }
 
   // Heard when it has rested.
@@ -544,7 +544,7 @@ class World {
         this.seize();
         this.throwIt(SWING);
         this.letGo();
-      } }, 'Give it a swing')));
+      } }, 'Set it swinging')));
     }
     if (stop.id === 'nine-shadows') {
       this.dials.append(element('div', { class: 'tools' }, ...['x', 'y', 'z'].map((axis, k) => element('button', { type: 'button', click: () => {
