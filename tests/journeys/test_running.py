@@ -1,5 +1,6 @@
 """A reader presses Run where all is well, where Python is missing, and where it cannot run."""
 
+import re
 import threading
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
@@ -41,7 +42,7 @@ def test_what_is_written_awaits_and_what_is_not_there_is_named(page, site):
         cell.locator(".cell_input").click()
         page.keyboard.press("Control+a")
         page.keyboard.type(code)
-        page.keyboard.press("Shift+Enter")
+        page.keyboard.press("Control+Enter")
         expect(cell.locator(".cell_output")).to_contain_text(result, timeout=PATIENCE)
 
 
@@ -62,8 +63,16 @@ def test_a_page_in_a_closed_frame_says_that_the_frame_is_closed(page, site):
     frame = f'<iframe sandbox="allow-scripts" src="{site}{CHAPTER}" width=900 height=700></iframe>'
     page.set_content(frame)
     inside = page.frame_locator("iframe")
+    faults = []
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    inside.locator("button.theme-switch-button:visible").first.click()
+    expect(inside.locator("html")).to_have_attribute("data-mode", re.compile("light|dark"))
+    inside.locator("button.search-button__button:visible").first.click()
+    expect(inside.locator("dialog[open] input[type=search]")).to_be_focused()
+    page.keyboard.press("Escape")
     inside.locator("button.run-cell:visible").first.click()
     expect(inside.locator("#live-words")).to_contain_text("sandbox", timeout=PATIENCE)
+    assert faults == []
 
 
 class AsText(SimpleHTTPRequestHandler):

@@ -144,6 +144,8 @@ def test_a_cell_is_edited_as_any_editor_is(page, site):
     assert content.inner_text() == "    a/b"
     page.keyboard.press("Escape")
     expect(page.locator("button.run-cell:focus")).to_be_visible()
+    page.keyboard.press("Tab")
+    expect(page.locator(".cm-editor.cm-focused")).to_have_count(0)
 
 
 def test_the_search_takes_every_character(page, site):

@@ -4,7 +4,7 @@ import csv
 import json
 import random
 import re
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 
 import nbformat
 import pytest
@@ -587,36 +587,6 @@ def test_what_two_tabs_write_at_one_moment_is_kept_of_both(context, site):
 
 
 # --- where nothing can be kept --------------------------------------------------------------------
-
-
-@contextmanager
-def sandboxed(context, site, name, allow):
-    outer = context.new_page()
-    errors = []
-    outer.on("pageerror", lambda error: errors.append(str(error)))
-    outer.goto(f"{site}search.html")
-    outer.evaluate(
-        "([address, allow]) => { const frame = document.createElement('iframe'); frame.sandbox = "
-        "allow; frame.style = 'width: 1280px; height: 800px'; frame.src = address; "
-        "document.body.replaceChildren(frame); }",
-        [f"{site}{name}.html", allow],
-    )
-    yield outer.frame_locator("iframe"), errors
-    outer.close()
-
-
-def test_page_lives_in_a_frame_that_forbids_storage(context, site):
-    with sandboxed(context, site, EXERCISE, "allow-scripts allow-popups") as (frame, errors):
-        html = frame.locator("html")
-        before = html.get_attribute("data-theme")
-        frame.locator("button.theme-switch-button:visible").first.click()
-        frame.locator("button.theme-switch-button:visible").first.click()
-        assert html.get_attribute("data-mode") in ("light", "dark", "auto") and before
-        frame.locator(
-            "button.search-button__button:visible, button.search-button:visible"
-        ).first.click()
-        frame.locator("dialog[open] input[type=search]").wait_for()
-        assert errors == []
 
 
 def test_reader_is_told_that_nothing_can_be_kept(browser, site):

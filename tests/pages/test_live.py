@@ -1158,21 +1158,6 @@ def test_edit_of_code_that_has_changed_is_offered(browser, site):
 # --- keyboard, screen readers, small screens ------------------------------------------------------
 
 
-def test_keyboard(shared):
-    shared.page.locator(".cm-content").first.wait_for(state="attached")
-    shared.write(3, "if True:")
-    shared.page.keyboard.press("Enter")
-    shared.page.keyboard.type("print('by keyboard')")
-    shared.page.keyboard.press("Control+Enter")
-    shared.wait()
-    assert "by keyboard" in shared.below(3)
-    shared.page.keyboard.press("Escape")
-    focused = "document.activeElement.getAttribute('aria-label')"
-    assert shared.page.evaluate(focused) == "Run cell 3"
-    shared.page.keyboard.press("Tab")
-    assert shared.page.evaluate(focused) != "Code of cell 3"
-
-
 @pytest.mark.long
 def test_accessible_in_use(browser, site):
     """In light, and in dark on a telephone."""

@@ -2,11 +2,8 @@
 they show, and they come out the same.
 """
 
-import hashlib
 import json
-import os
 import re
-import subprocess
 import sys
 from html.parser import HTMLParser
 from itertools import combinations
@@ -283,24 +280,15 @@ def test_frames_differ_without_colour():
 # What comes out.
 
 
-@pytest.mark.parametrize("name", SAMPLES)
-def test_ids_resolve_and_sizes_are_small(name):
-    figure = SAMPLES[name]
-    svg, html = svg_of(figure), figure._repr_html_()
-    ids = [part.get("id") for part in svg.iter() if part.get("id")]
-    targets = {part.get("href")[1:] for part in svg.iter() if part.get("href")}
-    assert len(ids) == len(set(ids)) and targets == set(ids)
-    assert len(html) < (62_000 if isinstance(figure, Animation) else 25_000)
-
-
-def test_figures_on_one_page_do_not_share_ids():
-    everything = [
-        part.get("id")
-        for figure in SAMPLES.values()
-        for part in svg_of(figure).iter()
-        if part.get("id")
-    ]
-    assert len(everything) == len(set(everything))
+def test_ids_resolve_and_no_two_figures_share_one_and_sizes_are_small():
+    ids = []
+    for figure in SAMPLES.values():
+        svg, html = svg_of(figure), figure._repr_html_()
+        own = [part.get("id") for part in svg.iter() if part.get("id")]
+        assert {part.get("href")[1:] for part in svg.iter() if part.get("href")} == set(own)
+        assert len(html) < (62_000 if isinstance(figure, Animation) else 25_000)
+        ids += own
+    assert len(ids) == len(set(ids))
 
 
 @pytest.mark.parametrize("name", ["plane", "against", "gimbal", "moving", "turning"])
@@ -341,29 +329,6 @@ def test_the_html_is_closed_in_order(name):
     checker = Checker()
     checker.feed(SAMPLES[name]._repr_html_())
     assert checker.open_tags == []
-
-
-def test_output_is_the_same_in_every_run():
-    code = (
-        "import hashlib, sys; sys.path.insert(0, sys.argv[1]); from test_drawing import SAMPLES; "
-        "print({name: hashlib.sha256(figure._repr_html_().encode()).hexdigest() for name, figure "
-        "in SAMPLES.items()})"
-    )
-    here = str(
-        {
-            name: hashlib.sha256(figure._repr_html_().encode()).hexdigest()
-            for name, figure in SAMPLES.items()
-        }
-    )
-    for seed in "1", "2":
-        run = subprocess.run(
-            [sys.executable, "-c", code, os.path.dirname(__file__)],
-            capture_output=True,
-            text=True,
-            env={**os.environ, "PYTHONHASHSEED": seed},
-            check=True,
-        )
-        assert run.stdout.strip() == here
 
 
 # Motion.
@@ -420,17 +385,6 @@ def test_key_frames_are_the_modules_orientations(name, sequence, angles, origins
             np.testing.assert_allclose(tip, expected, atol=0.08)
 
 
-def test_the_gimbal_ends_where_its_matrix_says():
-    drawing = gimbal_frames(GIMBAL_ANGLES)
-    expected = 0.46 * drawing.on_sheet(dcm_from_body_fixed(GIMBAL_ANGLES, "zxy"))
-    np.testing.assert_allclose(arrows(drawing, "D"), expected, atol=1e-9)
-    aligned = gimbal_frames((0, 0, 0))
-    for letter in "ABCD":
-        np.testing.assert_allclose(
-            arrows(aligned, letter), 0.46 * aligned.on_sheet(np.eye(3)), atol=1e-9
-        )
-
-
 def test_the_words_of_the_exercise_are_what_is_seen():
     """In each step the arrows named stay, every other arrow of the frames
     named moves, and nothing else does.
@@ -464,6 +418,7 @@ def test_the_exercise_page_does_not_tell_the_sequence():
 def test_nothing_moves_by_itself():
     for name in ("moving", "turning"):
         svg = svg_of(SAMPLES[name])
+        assert "<div hidden><button" in SAMPLES[name]._repr_html_(), "a script shows the controls"
         moving = [part for part in svg.iter() if part.tag.startswith("animate")]
         assert len(moving) > 20 and all(part.get("begin") == "indefinite" for part in moving)
         # Until then the paths stand as in the last drawing.
@@ -555,20 +510,6 @@ def test_keyboard_button_and_slider(moving_page):
     )
     moving_page.wait_for_function(between, arg=middle)
     assert moving_page.errors == []
-
-
-def test_without_a_script_the_figure_is_a_still(browser, tmp_path):
-    context = browser.new_context(java_script_enabled=False)
-    page = context.new_page()
-    (tmp_path / "page.html").write_text(
-        f'<!doctype html><meta charset="utf-8">{SAMPLES["moving"]._repr_html_()}', "utf8"
-    )
-    page.goto((tmp_path / "page.html").as_uri())
-    first = page.screenshot()
-    page.wait_for_timeout(500)
-    assert page.screenshot() == first
-    assert not page.query_selector("button").is_visible()
-    context.close()
 
 
 def test_labels_at_hand_are_those_that_matplotlib_sets():

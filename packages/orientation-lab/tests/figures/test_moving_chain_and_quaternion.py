@@ -22,7 +22,6 @@ from figure_pages import (  # noqa: F401
 )
 from orientations import random_unit_vectors, rotation_error
 from scipy.spatial.transform import Rotation
-from test_site import SIDEWAYS, violations
 from traitlets import TraitError
 
 from orientation import angular_velocity_matrix, dcm_from_body_fixed, dcm_from_space_fixed
@@ -375,24 +374,6 @@ def test_quaternion_by_keys_alone(open_figure):
     assert shown[:, 1] == pytest.approx(np.degrees(expected.speeds(expected.share)), abs=0.0501)
 
 
-EVERY = [
-    SuccessiveFigure,
-    lambda: SuccessiveFigure(turns=FOUR, compare="1 and 2 exchanged", share=0.4),
-    QuaternionFigure,
-    lambda: QuaternionFigure(view="way"),
-]
-
-
-@pytest.mark.sampled(1)
-@pytest.mark.parametrize("make", EVERY)
-@pytest.mark.parametrize("theme", ["light", "dark"])
-def test_accessible_in_both_themes_and_not_wider_than_a_phone(open_figure, make, theme):
-    for viewport in (WIDE, NARROW):
-        page = open_figure(make(), theme, viewport)
-        assert page.evaluate(SIDEWAYS) <= 0
-        assert violations(page) == []
-
-
 # Pictures that come every 50 milliseconds, however fast or slow this machine
 # is, and the times that were shown.
 STEADY = """() => {
@@ -459,15 +440,6 @@ def test_play_begins_with_a_picture_that_was_due_before(open_figure, figure, mot
     page.locator(".player:visible button", has_text="Play").click()
     page.wait_for_function("window.seen.size > 3")
     assert min(float(value) for value in page.evaluate("[...window.seen]")) == 0
-
-
-def test_turn_once_round(open_figure):
-    page = open_figure(QuaternionFigure(angle=0.0))
-    page.get_by_role("button", name="Turn once round").click()
-    page.wait_for_function(
-        """() => document.querySelector('input[aria-label="theta in degrees"]').value === '360'"""
-    )
-    assert numbers(page, "q and minus q, scalar first")[0, 0] == -1
 
 
 def test_no_speed_is_cut_off_in_silence():

@@ -144,54 +144,6 @@ def sensor_logger_json():
     )
 
 
-def sensor_log():
-    """SensorLog of the App Store: everything in one table, times of several
-    clocks, and gravity in its own columns.
-    """
-    found, time, gyr, acc, mag, quaternion = _parts()
-    gravity = _gravity(found) / GRAVITY
-    names = ["loggingTime(txt)", "loggingSample(N)", "accelerometerTimestamp_sinceReboot(s)"]
-    names += [f"accelerometerAcceleration{axis}(G)" for axis in "XYZ"] + [
-        "gyroTimestamp_sinceReboot(s)"
-    ]
-    names += [f"gyroRotation{axis}(rad/s)" for axis in "XYZ"] + ["motionTimestamp_sinceReboot(s)"]
-    names += [f"motionUserAcceleration{axis}(G)" for axis in "XYZ"] + [
-        f"motionGravity{axis}(G)" for axis in "XYZ"
-    ]
-    names += [f"motionMagneticField{axis}(µT)" for axis in "XYZ"] + [
-        f"motionQuaternion{axis}(R)" for axis in "XYZW"
-    ]
-    columns = [
-        7e4 + time,
-        acc / GRAVITY,
-        7e4 + time,
-        gyr,
-        7e4 + time,
-        acc / GRAVITY - gravity,
-        gravity,
-        mag,
-    ]
-    columns.append(np.roll(quaternion, -1, axis=1))
-    body = _table(None, columns, number="{:.9f}").decode().splitlines()
-    rows = [f"2024-02-06T10:11:{int(t) % 60:02}.{int(1000 * t) % 1000:03}+01:00,{k},{row}"
-            for k, (t, row) in enumerate(zip(time, body, strict=True))]  # fmt: skip
-    scales = {"gyroscope": 1, "accelerometer": 1 / GRAVITY, "magnetometer": 1, "quaternion": 1}
-    return Form("\n".join([",".join(names), *rows]).encode(), scales)
-
-
-def physics_toolbox():
-    """Physics Toolbox Sensor Suite: g-force, linear acceleration,
-    turning and field, in short names.
-    """
-    found, time, gyr, acc, mag, _ = _parts()
-    names = "time;gFx;gFy;gFz;ax;ay;az;wx;wy;wz;p;Bx;By;Bz".split(";")
-    columns = [time, acc / GRAVITY, acc - _gravity(found), gyr, np.full(len(time), 1013.2), mag]
-    return Form(
-        _table(names, columns, ";", "{:.6f}"),
-        {"gyroscope": 1, "accelerometer": 1 / GRAVITY, "magnetometer": 1},
-    )
-
-
 def motion_sense():
     """Core Motion in a data set: a column without a name that counts,
     angles, gravity, turning, acceleration.
@@ -207,26 +159,6 @@ def motion_sense():
     return Form(
         _table(names, columns), {"gyroscope": 1, "accelerometer": 1 / GRAVITY}, counted=True
     )
-
-
-def meta_wear():
-    """MbientLab: a table for each sensor; which it is, its unit says, and its file's name."""
-    _, time, gyr, acc, _, _ = _parts()
-    head = "epoc (ms),timestamp (+0100),elapsed (s)"
-
-    def one(values, unit):
-        rows = (
-            f"{1.5e12 + 1000 * t:.0f},2018-09-07T19.17.{int(t) % 60:02}.{int(1000 * t) % 1000:03},"
-            f"{t:.3f}," + ",".join(f"{part:.4f}" for part in row)
-            for t, row in zip(time, values, strict=True)
-        )
-        return "\n".join([f"{head},x-axis ({unit}),y-axis ({unit}),z-axis ({unit})", *rows])
-
-    files = {
-        "MetaWear_2018_F1_A.csv": one(acc / GRAVITY, "g"),
-        "MetaWear_2018_F1_G.csv": one(DEG * gyr, "deg/s"),
-    }
-    return Form(_zipped(files), {"gyroscope": DEG, "accelerometer": 1 / GRAVITY})
 
 
 def xsens_mtw():
@@ -287,17 +219,6 @@ def movella_dot():
     )
 
 
-def x_io():
-    _, time, gyr, acc, mag, _ = _parts()
-    names = ["Packet number", *(f"Gyroscope {axis} (deg/s)" for axis in "XYZ")]
-    names += [f"Accelerometer {axis} (g)" for axis in "XYZ"] + [
-        f"Magnetometer {axis} (G)" for axis in "XYZ"
-    ]
-    columns = [4711 + np.arange(len(time)), DEG * gyr, acc / GRAVITY, mag / 100]
-    scales = {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "magnetometer": 0.01}
-    return Form(_table(names, columns, number="{:.9g}"), scales, counted=True)
-
-
 def shimmer():
     """Three lines above the numbers: names with what they are at their ends, kinds, and units."""
     _, time, gyr, acc, mag, _ = _parts()
@@ -310,20 +231,6 @@ def shimmer():
         _table(None, (1000 * time, DEG * gyr, acc, mag), "\t", head=head),
         {"gyroscope": DEG, "accelerometer": 1, "magnetometer": 1},
     )
-
-
-def pico_quake():
-    """Remarks with signs of numbers, short names without units, and a column that counts."""
-    _, time, gyr, acc, _, _ = _parts()
-    head = ["# PLab PicoQuake Data", "# Time: 2024-04-21 15:54:46.333682, Device: D4E9 "
-        "(E6632891E36F2029)",
-            "# Num. samples: 10000, Duration: 5.0 s", "# Config: data_rate = 100.0 Hz, "
-                "filter = 42 Hz, "
-                "acc_range = 4 g",
-            "# Integrity: True, Skipped samples: 0"]  # fmt: skip
-    names = ["count", "a_x", "a_y", "a_z", "g_x", "g_y", "g_z"]
-    columns = [np.arange(1, len(time) + 1), acc / GRAVITY, DEG * gyr]
-    return Form(_table(names, columns, head=head), {"gyroscope": DEG, "accelerometer": 1 / GRAVITY})
 
 
 def gyroflow():
@@ -405,47 +312,6 @@ def ardupilot():
     return Form("\n".join(lines).encode(), scales)
 
 
-def px4():
-    """ulog2csv: a table for each topic, the accelerometer's time counted from the gyroscope's."""
-    _, time, gyr, acc, mag, quaternion = _parts()
-    stamp = 1.2e7 + 1e6 * time
-    combined = ["timestamp", *(f"gyro_rad[{k}]" for k in range(3)), "gyro_integral_dt",
-                "accelerometer_timestamp_relative", *(f"accelerometer_m_s2[{k}]" for k in range(3)),
-                "accelerometer_integral_dt", "accelerometer_clipping"]  # fmt: skip
-    attitude = [
-        "timestamp",
-        *(f"q[{k}]" for k in range(4)),
-        *(f"delta_q_reset[{k}]" for k in range(4)),
-    ]
-    attitude.append("quat_reset_counter")
-    dt, none = np.full(len(time), 5000.0), 0 * time
-    files = {
-        "log_sensor_combined_0.csv": _table(
-            combined, [stamp, gyr, dt, none, acc, dt, none], number="{:.10g}"
-        ),
-        "log_vehicle_magnetometer_0.csv": _table(
-            [
-                "timestamp",
-                "timestamp_sample",
-                "device_id",
-                *(f"magnetometer_ga[{k}]" for k in range(3)),
-                "calibration_count",
-            ],
-            [stamp, stamp, none + 396825, mag / 100, none + 1],
-            number="{:.10g}",
-        ),
-        "log_vehicle_attitude_0.csv": _table(
-            attitude, [stamp, quaternion, none + 1, none, none, none, none], number="{:.10g}"
-        ),
-        "log_cpuload_0.csv": _table(
-            ["timestamp", "load", "ram_usage"], [stamp, dt / 1e4, dt / 2e4], number="{:.10g}"
-        ),
-    }
-    return Form(
-        _zipped(files), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 0.01, "quaternion": 1}
-    )
-
-
 def rostopic():
     """As `rostopic echo -p` writes it: nanoseconds, a frame's name, and
     covariances between the vectors.
@@ -471,36 +337,6 @@ def rostopic():
             f"{stamp},{k},{stamp},imu_link," + ",".join(f"{one},{covariance}" for one in vectors)
         )
     return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
-
-
-def euroc():
-    """A flying machine of a laboratory: nanoseconds, units such as rad s^-1, turning first."""
-    _, time, gyr, acc, _, _ = _parts()
-    names = [
-        "#timestamp [ns]",
-        *(f"w_RS_S_{axis} [rad s^-1]" for axis in "xyz"),
-        *(f"a_RS_S_{axis} [m s^-2]" for axis in "xyz"),
-    ]
-    rows = [
-        f"{1_403_636_579_758_555_392 + round(1e9 * t)},"
-        + ",".join(f"{one:.16g}" for one in (*g, *a))
-        for t, g, a in zip(time, gyr, acc, strict=True)
-    ]
-    return Form(
-        "\r\n".join([",".join(names), *rows]).encode(), {"gyroscope": 1, "accelerometer": 1}
-    )
-
-
-def tum():
-    """A remark with the names, blanks between numbers, seconds
-    since 1970; turning before pushes.
-    """
-    _, time, gyr, acc, _, _ = _parts()
-    head = ["# IMU of a table in motion", "# file: 'desk.bag'", "# timestamp wx wy wz ax ay az"]
-    return Form(
-        _table(None, [1.3e9 + time, gyr, acc], " ", "{:.14g}", head=head),
-        {"gyroscope": 1, "accelerometer": 1},
-    )
 
 
 def gnss_logger():
@@ -595,54 +431,6 @@ def flight_test():
     )
 
 
-def witmotion():
-    """Tabs, a clock of its own whose parts have no zeros before them, angles
-    called AngleX, a field without a unit.
-    """
-    found, time, gyr, acc, mag, quaternion = _parts()
-    angles = found["truth"].as_euler("ZYX", degrees=True)[:, ::-1]
-    names = [
-        "Time(s)",
-        "ChipTime",
-        "ax(g)",
-        "ay(g)",
-        "az(g)",
-        "wx(deg/s)",
-        "wy(deg/s)",
-        "wz(deg/s)",
-        "AngleX(deg)",
-        # fmt: skip
-        "AngleY(deg)",
-        "AngleZ(deg)",
-        "T(°)",
-        "hx",
-        "hy",
-        "hz",
-        "q0",
-        "q1",
-        "q2",
-        "q3",
-    ]
-    columns = [acc / GRAVITY, DEG * gyr, angles, np.full(len(time), 25), mag, quaternion]
-    body = _table(None, columns, "\t", "{:.4f}").decode().splitlines()
-    rows = [
-        f"10:11:{t % 60:06.3f}\t2020-1-1 "
-        f"0:{int(t) // 60}:{int(t) % 60}.{round(1000 * t) % 1000:03}\t{row}"
-        for t, row in zip(time, body, strict=True)
-    ]
-    scales = {
-        "gyroscope": DEG,
-        "accelerometer": 1 / GRAVITY,
-        "magnetometer": 1,
-        "angles": DEG,
-        "quaternion": 1,
-    }
-    return Form(
-        "\r\n".join(["StartTime：2020-12-21 10:11:00.000", "\t".join(names), *rows]).encode(),
-        scales,
-    )
-
-
 def polar():
     """A table for each sensor with the same three headings; [G] is gauss, as
     only the name of its table says.
@@ -668,35 +456,6 @@ def polar():
             {f"Polar_Sense_B36B5B28_20240305_{name}.txt": text for name, text in files.items()}
         ),
         {"gyroscope": DEG, "accelerometer": 1000 / GRAVITY, "magnetometer": 0.01},
-    )
-
-
-def dat_con():
-    """A drone's log: a clock that counts ticks before the one in seconds,
-    and a word at the end of each row.
-    """
-    found, time, gyr, acc, mag, quaternion = _parts()
-    names = ["Clock:Tick#", "Clock:offsetTime", *(f"IMU_ATTI(0):accel{axis}" for axis in "XYZ")]
-    names += ["IMU_ATTI(0):accelComposite:C", *(f"IMU_ATTI(0):gyro{axis}" for axis in "XYZ")]
-    names += [
-        *(f"IMU_ATTI(0):mag{axis}" for axis in "XYZ"),
-        *(f"IMU_ATTI(0):quat{axis}:D" for axis in "WXYZ"),
-    ]
-    lengths = np.linalg.norm(acc, axis=1) / GRAVITY
-    columns = [
-        3e9 + 4.5e6 * time,
-        time - 3,
-        acc / GRAVITY,
-        lengths,
-        DEG * gyr,
-        10 * mag,
-        quaternion,
-    ]
-    rows = _table(None, columns, number="{:.10g}").decode().splitlines()
-    text = "\n".join([",".join([*names, "flyCState"]), *(f"{row},Manual" for row in rows)])
-    return Form(
-        text.encode(),
-        {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "magnetometer": 10, "quaternion": 1},
     )
 
 
@@ -770,30 +529,20 @@ FORMS = [
     phyphox_table,
     sensor_logger,
     sensor_logger_json,
-    sensor_log,
-    physics_toolbox,
     motion_sense,
-    meta_wear,
     xsens_mtw,
     movella_dot,
-    x_io,
     shimmer,
-    pico_quake,
     gyroflow,
     betaflight,
     ardupilot,
-    px4,
     rostopic,
-    euroc,
-    tum,
     gnss_logger,
     no_headings,
     arduino,
     matlab_mobile,
     flight_test,
-    witmotion,
     polar,
-    dat_con,
     core_motion,
     # fmt: skip
     one_sensor_a_line,

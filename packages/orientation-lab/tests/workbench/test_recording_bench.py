@@ -170,7 +170,6 @@ TOLD = {
 }
 
 
-@pytest.mark.sampled(4)
 @pytest.mark.parametrize("form", FORMS)
 def test_many_forms_hold_one_recording(form):
     """Each sensor is the one that it is, along the right axes, sample by sample:
@@ -206,7 +205,6 @@ UNITS = (
 )
 
 
-@pytest.mark.sampled(4)
 @pytest.mark.parametrize("form", FORMS)
 def test_units_and_axes_of_many_forms_come_out_by_themselves(form):
     given = form()
