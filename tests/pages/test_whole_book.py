@@ -117,7 +117,8 @@ def is_there(words, texts):
 
 
 @pytest.mark.long
-def test_it_says_what_it_is(book):
+def test_it_says_what_it_is_and_lists_its_parts(book):
+    """The bookmarks are the parts, chapters and sections."""
     assert str(book.docinfo.Title) == TITLE
     assert str(book.docinfo.Subject) == edition().words != ""
     with book.open_metadata(set_pikepdf_as_editor=False, update_docinfo=False) as metadata:
@@ -126,10 +127,6 @@ def test_it_says_what_it_is(book):
     assert str(book.Root.Lang).startswith("en")
     assert book.Root.MarkInfo.Marked
     assert book.Root.PageMode == pikepdf.Name.UseOutlines
-
-
-@pytest.mark.long
-def test_bookmarks_are_the_parts_chapters_and_sections(book):
     with book.open_outline() as outline:
         bookmarks = {item.title: item.children for item in outline.root}
     headings = {
@@ -171,7 +168,10 @@ def test_links_lead_somewhere(book, places):
 
 
 @pytest.mark.long
-def test_contents_list_has_the_right_page_numbers(places, texts):
+def test_every_chapter_is_whole_and_listed_with_its_page(places, texts, chapter_texts):
+    """Its sentences can be found; its equations, figures and exercises have their numbers."""
+    # A check that nobody has answered has no result to print.
+    assert not [number for number, text in enumerate(texts, 1) if "Not attempted" in text]
     listed = " ".join(texts[1 : places[pdf.place(pages()[1])]])
     for name in pages()[1:]:
         title = plain(pdf.heading(article(name).h1))
@@ -181,12 +181,6 @@ def test_contents_list_has_the_right_page_numbers(places, texts):
         assert re.search(rf"(^|\D){number}(\D|$)", texts[number - 1]), (
             "the page bears another number"
         )
-
-
-@pytest.mark.long
-def test_every_chapter_is_whole(chapter_texts):
-    """Its sentences can be found; its equations, figures and exercises have their numbers."""
-    for name in pages()[1:]:
         text = " ".join(chapter_texts[name])
         for number in article(name).select(".eqno"):
             assert number.get_text(strip=True) in text, name
@@ -216,10 +210,16 @@ def structure(node):
 
 
 @pytest.mark.long
-def test_every_figure_is_there_and_says_what_it_shows(book):
-    descriptions = [
-        str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if "/Alt" in node
-    ]
+def test_the_structure_is_that_of_the_pages(book):
+    """Headings nest, tables have their heads, and figures and formulas have their words."""
+    elements = list(structure(book.Root.StructTreeRoot.K))
+    kinds = Counter(str(element.S)[1:] for element in elements)
+    levels = [int(str(element.S)[2]) for element in elements if re.match("/H[1-6]", str(element.S))]
+    assert levels[0] == 1 and all(below <= level + 1 for level, below in pairwise(levels))
+    for kind, tag in (("Table", "table"), ("TR", "tr"), ("TH", "th"), ("TD", "td")):
+        assert kinds[kind] == sum(len(article(name).find_all(tag)) for name in pages()), kind
+    assert not [element for element in elements if element.S == "/Figure" and "/Alt" not in element]
+    descriptions = [str(element.Alt) for element in elements if "/Alt" in element]
     # The site keeps the essay's later stills in files of their own.
     shown = [
         picture.get("aria-label") or picture["alt"]
@@ -229,13 +229,7 @@ def test_every_figure_is_there_and_says_what_it_shows(book):
     assert len(shown) > 40
     assert sorted(set(shown) - set(descriptions)) == []
     assert sum(text in set(shown) for text in descriptions) == len(shown)
-
-
-@pytest.mark.long
-def test_formulas_are_there_and_are_read_in_words(book):
-    spoken_formulas = Counter(
-        str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if node.S == "/Formula"
-    )
+    spoken_formulas = Counter(str(element.Alt) for element in elements if element.S == "/Formula")
     expected = Counter(
         spoken(math) for name in pages() for math in article(name).select(".katex math")
     )
@@ -244,25 +238,7 @@ def test_formulas_are_there_and_are_read_in_words(book):
 
 
 @pytest.mark.long
-def test_the_structure_is_that_of_the_pages(book):
-    """Headings nest, tables have their heads, and every picture has words."""
-    elements = list(structure(book.Root.StructTreeRoot.K))
-    kinds = Counter(str(element.S)[1:] for element in elements)
-    levels = [int(str(element.S)[2]) for element in elements if re.match("/H[1-6]", str(element.S))]
-    assert levels[0] == 1 and all(below <= level + 1 for level, below in pairwise(levels))
-    for kind, tag in (("Table", "table"), ("TR", "tr"), ("TH", "th"), ("TD", "td")):
-        assert kinds[kind] == sum(len(article(name).find_all(tag)) for name in pages()), kind
-    assert not [element for element in elements if element.S == "/Figure" and "/Alt" not in element]
-
-
-@pytest.mark.long
-def test_pictures_and_notes_are_not_of_what_was_never_tried(texts):
-    """A check that nobody has answered has no result to print."""
-    assert not [number for number, text in enumerate(texts, 1) if "Not attempted" in text]
-
-
-@pytest.mark.long
-def test_no_page_is_nearly_empty_without_reason(places, texts):
+def test_pages_are_filled_and_nothing_reaches_into_the_margins(places, texts):
     """At most one page in forty is less than half full, other than the last of a chapter.
 
     The content that follows is in one piece.
@@ -270,13 +246,18 @@ def test_no_page_is_nearly_empty_without_reason(places, texts):
     document = pdfium.PdfDocument(PDF)
     last = {places[pdf.place(name)] for name in pages()[1:]} | {len(document)}
     last.add(next(k for k, text in enumerate(texts) if text.startswith(f"{k + 1} About this book")))
-    scale, empty = 0.35, []
+    scale, empty = 0.4, []
+    edge = int(MARGIN * MILLIMETRE * scale)
     for number, page in enumerate(document, start=1):
         picture = page.render(scale=scale, grayscale=True).to_numpy()
         body = picture[int(23 * MILLIMETRE * scale) : -int(22 * MILLIMETRE * scale)]
         ink = np.flatnonzero(body.min(axis=1) < 225)
         if number not in last and (ink.max(initial=0) < 0.5 * len(body)):
             empty.append(number)
+        assert picture.min() < 200, f"page {number} is empty"
+        assert picture[:, :edge].min() > 200 and picture[:, -edge:].min() > 200, (
+            f"page {number} is too wide"
+        )
         page.close()
     assert len(empty) <= len(document) / 40, empty
     document.close()
@@ -295,21 +276,6 @@ def test_no_glyph_comes_from_elsewhere(book):
     ), names
     for font in fonts.values():
         assert "/FontFile2" in font.DescendantFonts[0].FontDescriptor
-
-
-@pytest.mark.long
-def test_nothing_reaches_into_the_margins():
-    document = pdfium.PdfDocument(PDF)
-    scale = 0.4
-    edge = int(MARGIN * MILLIMETRE * scale)
-    for number, page in enumerate(document, start=1):
-        picture = page.render(scale=scale, grayscale=True).to_numpy()
-        assert picture.min() < 200, f"page {number} is empty"
-        assert picture[:, :edge].min() > 200 and picture[:, -edge:].min() > 200, (
-            f"page {number} is too wide"
-        )
-        page.close()
-    document.close()
 
 
 def test_too_wide_a_line_stops_the_printing(browser):
@@ -367,15 +333,6 @@ def test_without_a_browser_it_says_so(monkeypatch):
     with pytest.raises(SystemExit, match="This machine has neither Chromium nor Chrome"):
         with browser_module.open_browser():
             pass
-
-
-@pytest.mark.long
-def test_front_page_offers_all():
-    front = (HTML / "index.html").read_text("utf8")
-    (place,) = whole_book.PLACE.findall(front)
-    for path in (PDF, EPUB, ZIP):
-        assert f'href="take-away/{path.name}"' in place
-        assert f"{path.stat().st_size / 1e6:.1f} MB" in place
 
 
 def test_offer_is_written_and_withdrawn():
@@ -482,7 +439,12 @@ def test_pages_in_the_zip_ask_for_nothing_ahead():
 
 
 @pytest.mark.long
-def test_front_page_in_the_zip_offers_what_is_not_the_zip(unpacked):
+def test_front_page_offers_all_and_that_in_the_zip_what_is_not_the_zip(unpacked):
+    front = (HTML / "index.html").read_text("utf8")
+    (place,) = whole_book.PLACE.findall(front)
+    for path in (PDF, EPUB, ZIP):
+        assert f'href="take-away/{path.name}"' in place
+        assert f"{path.stat().st_size / 1e6:.1f} MB" in place
     front = (unpacked / "index.html").read_text("utf8")
     (place,) = whole_book.PLACE.findall(front)
     assert re.findall(r'href="([^"]*)"', place) == [
@@ -544,7 +506,7 @@ def test_pages_open_from_disk(from_disk, unpacked):
 
 
 @pytest.mark.long
-def test_reader_goes_through_the_book_from_disk(from_disk, unpacked):
+def test_reader_goes_through_the_book_from_disk_moves_a_figure_and_searches(from_disk, unpacked):
     page = settled(from_disk)
     page.click("article .sd-card a >> nth=0")
     assert "/rotations.html" in page.url
@@ -554,10 +516,7 @@ def test_reader_goes_through_the_book_from_disk(from_disk, unpacked):
     assert page.url != here and page.url.startswith(unpacked.as_uri())
     page.click(".theme-switch-button")
     assert page.evaluate("document.documentElement.dataset.mode") != "auto"
-
-
-@pytest.mark.long
-def test_moving_figure_moves_from_disk(from_disk, unpacked):
+    # A figure moves.
     name = next(
         name
         for name in CHAPTERS
@@ -577,11 +536,7 @@ def test_moving_figure_moves_from_disk(from_disk, unpacked):
         f"before => ({drawn})(document.querySelector('[data-figure=gimbal]')) !== before",
         arg=before,
     )
-
-
-@pytest.mark.long
-def test_search_finds_a_word_from_disk(from_disk):
-    page = settled(from_disk)
+    # The search finds a word.
     page.keyboard.press("Control+k")
     page.keyboard.type("gimbal lock")
     page.wait_for_selector("ul.found a")
