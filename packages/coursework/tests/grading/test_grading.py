@@ -1311,17 +1311,3 @@ def test_what_is_missing_is_said(course, tmp_path):
             solutions=course / "solutions",
             show=io.StringIO(),
         )
-    (tmp_path / "out" / "term.toml").unlink()
-    with pytest.raises(SystemExit, match="does not exist"):
-        main(
-            [
-                "grade",
-                str(tmp_path / "nowhere"),
-                "--out",
-                str(tmp_path / "out"),
-                "--solutions",
-                str(course / "solutions"),
-            ]
-        )
-    with pytest.raises(SystemExit, match="no records"):
-        main(["regrade", str(tmp_path / "empty"), "--solutions", str(course / "solutions")])

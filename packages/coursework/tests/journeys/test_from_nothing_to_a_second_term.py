@@ -73,7 +73,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
         "student,name\nada,Ada Lee\nben,Ben Moe\ncem,C Oz\ndan,D Ek\n"
     )
     (folder / "book.csv").write_text(BOOK)
-    assert "Every question passed." in run("selftest")
+    assert "Every question passed." in run("selftest solutions/first-steps.ipynb")
     monkeypatch.setattr(
         "coursework.authoring.selftest.selftest", Mock(side_effect=KeyboardInterrupt)
     )
@@ -84,6 +84,9 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     # Before anything is graded, each command says so.
     assert "There are no records" in run("regrade marks", fails=True)
     assert "nobody yet. If your marks are elsewhere" in run("why ada first-steps", fails=True)
+    assert "lists no students" in run("term new marks --roster course.toml", fails=True)
+    assert "does not exist" in run("grade handed-out --out marks", fails=True)
+    assert not (folder / "marks").exists()
     assert "Read it, and make your choices" in run("term new marks --roster roster.csv")
     term = folder / "marks" / "term.toml"
     begun = "[assignments.first-steps]\n"
@@ -95,7 +98,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     assert "handed in nothing: dan" in run("grade handed-in --out marks")
     assert "ada, first-steps: 6 of 6 points." in run("why ada first-steps")
     assert "area: wrong (This is the area of the rectangle" in run("why ben first-steps")
-    assert "There are marks for first-steps." in run("why ada first", fails=True)
+    assert "Did you mean 'first-steps'?" in run("why ada first-step", fails=True)
     said = run("export marks --lms book.csv --feedback feedback.zip")
     assert "4 filled in" in said and "3 pages of feedback" in said
     # A mended question moves marks once somebody agrees, and the next export says what changed.

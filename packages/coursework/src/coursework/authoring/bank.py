@@ -176,7 +176,9 @@ def _chosen(course: Course, wanted: Collection[str]) -> Iterator[tuple[Path, lis
     known = {*(path.stem for path in asked), *(name for names in asked.values() for name in names)}
     for name in wanted:
         if name not in known:
-            raise AuthorError(f"There is no question or notebook {name!r}.")
+            raise AuthorError(
+                f"There is no question or notebook {name!r}; there are {', '.join(sorted(known))}."
+            )
     for path, names in asked.items():
         chosen = [name for name in names if not wanted or {name, path.stem} & {*wanted}]
         if chosen:

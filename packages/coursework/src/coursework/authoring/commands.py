@@ -19,6 +19,11 @@ def argument(*names: str, **options: Any) -> tuple[tuple[str, ...], dict[str, An
     return names, options
 
 
+def notebook_name(typed: str) -> str:
+    """The name of a notebook or a question, for which a shell may have completed a path."""
+    return Path(typed).stem if typed.endswith(".ipynb") else typed
+
+
 SOURCES = argument(
     "--sources",
     type=Path,
@@ -40,6 +45,7 @@ ARGUMENTS = {
             argument(
                 "only",
                 nargs="*",
+                type=notebook_name,
                 metavar="NOTEBOOK",
                 help="names of the notebooks to release (default: all)",
             ),
@@ -77,6 +83,7 @@ ARGUMENTS = {
         [
             argument(
                 "name",
+                type=notebook_name,
                 metavar="NOTEBOOK/QUESTION",
                 help="a question, or a notebook to show all of its questions",
             ),
@@ -96,6 +103,7 @@ ARGUMENTS = {
             argument(
                 "--questions",
                 nargs="*",
+                type=notebook_name,
                 default=[],
                 metavar="NOTEBOOK/QUESTION",
                 help="questions or notebooks (default: all)",
@@ -112,6 +120,7 @@ ARGUMENTS = {
             argument(
                 "only",
                 nargs="*",
+                type=notebook_name,
                 metavar="NOTEBOOK",
                 help="names of the notebooks to test (default: all)",
             ),
@@ -178,23 +187,11 @@ def wheels(folder: Path) -> None:
     print(*(wheel(name, folder) for name in DISTRIBUTIONS), sep="\n")
 
 
-def _writable(page: str | Path) -> str | Path:
-    """Return the path of a page if it can be written, so that an error comes before the work."""
-    Path(page).parent.mkdir(parents=True, exist_ok=True)
-    new = not Path(page).exists()
-    Path(page).touch()
-    if new:
-        Path(page).unlink()
-    return page
-
-
 def trial(name: str, page: str | None) -> None:
     from .trial import trial as show
 
     course = _course()
-    print(
-        f"The page: {show(course, name, _writable(page or course.archive.with_name('try.html')))}"
-    )
+    print(f"The page: {show(course, name, page or course.archive.with_name('try.html'))}")
 
 
 def bank(out: Path, format: str, questions: Sequence[str]) -> None:
@@ -213,7 +210,7 @@ def selftest(only: Sequence[str], page: str | None, sources: Path | None) -> Non
     from .selftest import selftest as try_all
 
     course = _course(sources)
-    place = _writable(page or course.archive.with_name("selftest.html"))
+    place = page or course.archive.with_name("selftest.html")
     faults = try_all(course, place, only)
     print(f"The page: {place}")
     if faults:

@@ -11,7 +11,7 @@ from ..checking.variants import text_of
 from .author import AuthoredQuestion, AuthorError, to_page
 from .course import Course
 from .selftest import try_question, write_page
-from .source import read_source, texts_of_questions
+from .source import notebooks_in, read_source, texts_of_questions
 
 #: All variants of a question stand side by side, to be compared.
 SIDE_BY_SIDE = (
@@ -36,9 +36,7 @@ def trial(course: Course, name: str, page: str | Path) -> str | Path:
         There is no such question, or it is not well posed.
     """
     notebook = name.partition("/")[0]
-    path = course.sources / f"{notebook}.ipynb"
-    if not path.is_file():
-        raise AuthorError(f"There is no {path.name} in {course.sources}.")
+    (path,) = notebooks_in(course.sources, [notebook])
     source = read_source(path)
     chosen = [question for key, question in source.questions.items() if name in (notebook, key)]
     if not chosen:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..authoring.commands import argument
+from ..authoring.commands import argument, notebook_name
 
 if TYPE_CHECKING:
     from .judging.journal import Journal
@@ -61,6 +61,7 @@ ARGUMENTS = {
             argument(
                 "--assignment",
                 action="append",
+                type=notebook_name,
                 default=[],
                 metavar="NAME",
                 help="grade only this assignment (default: all in term.toml)",
@@ -124,6 +125,7 @@ ARGUMENTS = {
             argument(
                 "--questions",
                 nargs="+",
+                type=notebook_name,
                 default=[],
                 metavar="NOTEBOOK/QUESTION",
                 help="the questions (default: those in term.toml)",

@@ -40,6 +40,7 @@ class Store:
     def locked(self) -> Iterator[None]:
         """Keep other runs away; what a run that was killed left half done is removed."""
         # Marks and answers are for nobody else who works on this machine.
+        new = not self.folder.exists()
         self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         with open(self.folder / "lock", "w") as self.lock:
             try:
@@ -54,6 +55,8 @@ class Store:
                 # A run that was refused leaves nothing behind.
                 if not self.records.exists():
                     (self.folder / "lock").unlink()
+                if new and not any(self.folder.iterdir()):
+                    self.folder.rmdir()
 
     def in_copy_of_process(self) -> None:
         """Leave the lock to the process that has it: when that one

@@ -462,6 +462,8 @@ def new_term(folder: str | Path, sources: Path, roster: str | None) -> str:
         names=", ".join(map(json.dumps, names)),
         first=names[0],
     )
+    if roster:
+        Roster(roster)  # or a file that is no roster would leave a term that nobody can use
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     path.write_text(text, "utf8")
     read_term(path)

@@ -1,6 +1,7 @@
 """How a mark came to be what it is, in a few lines."""
 
 import datetime
+import difflib
 
 from ...checking.reply import plain_text
 from ..judging import term as of_term
@@ -26,11 +27,13 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
     expected = term.roster and student in term.roster.people and assignment in term.assignments
     if given and record is None or not given and not expected:
         own = sorted(name for owner, name in all_given if owner == whose)
+        known = own or sorted({owner for owner, _ in all_given})
+        near = difflib.get_close_matches(assignment if own else student, known, 1)
         raise ValueError(
             f"There are no marks of {student!r} for {assignment!r} in {store.folder}. There are "
-            f"marks {'for' if own else 'of'} "
-            f"{', '.join(own or sorted({owner for owner, _ in all_given})[:40]) or 'nobody yet'}"
+            f"marks {'for' if own else 'of'} {', '.join(known[:40]) or 'nobody yet'}"
             f"{', but its record is gone: grade again' if given else ''}."
+            f"{f' Did you mean {near[0]!r}?' if near and not given else ''}"
             f"{'' if all_given else ' If your marks are elsewhere, add --marks and their folder.'}"
         )
     named = f"{student} (in {whose})" if whose != student else student

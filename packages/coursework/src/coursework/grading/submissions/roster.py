@@ -123,7 +123,7 @@ class Roster:
         }
         self.path = Path(path)
         self.people: dict[str, Person] = {}
-        for line, row in _rows(Path(path)):
+        for line, row in _rows(self.path):
             person = Person(_called(row), row)
             if person.student is None:
                 continue  # Canvas's line of possible points
@@ -132,7 +132,8 @@ class Roster:
             self.people[person.student] = person
         if not self.people:
             raise BadRoster(
-                f"{path} lists no students. Its columns may be called {', '.join(sorted(COLUMNS))}."
+                f"{path} lists no students. A roster is a table (.csv) with a column `student`, "
+                "`name` or `email`, or a gradebook from Canvas, Moodle or Brightspace."
             )
         addresses = {
             name: one.called["email"][0]
@@ -219,8 +220,10 @@ def cells_in(path: Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
 def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
     try:
         header, lines = cells_in(path)
-    except OSError as error:
-        raise BadRoster(f"We cannot read the roster {path}: {error.strerror}.") from None
+    except (OSError, csv.Error) as error:
+        raise BadRoster(
+            f"We cannot read the roster {path}: {getattr(error, 'strerror', error)}."
+        ) from None
     repeated = [name for name, times in Counter(header).items() if times > 1 and name]
     if repeated:
         raise BadRoster(f"{path}: two columns are called {repeated[0]!r}.")
