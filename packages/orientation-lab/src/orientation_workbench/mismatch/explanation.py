@@ -533,7 +533,7 @@ def sentences(explanation):
     for fault in () if explanation.names else explanation.faults:
         yield f"- {fault}"
     if explanation.residual > 1e-3:
-        yield f"After that, {explanation.residual:.2g} degrees remain."
+        yield f"The remaining difference is {explanation.residual:.2g} degrees."
     if explanation.further_pose:
         if left > 1:
             yield f"{more[0].upper()}{more[1:]} fit{'s' * (left == 2)} as well."

@@ -220,7 +220,7 @@ function answer(found, table, declare) {
     parts.push(element('ul', {}, ...found.faults.map((fault, k) => element('li', {}, `${capital(fault)}. `,
       ...(links[k] ? linked(links[k]) : [])))));
   }
-  if (found.residual > 1e-3) parts.push(element('p', {}, `After that, ${Number(found.residual.toPrecision(2))} degrees remain.`));
+  if (found.residual > 1e-3) parts.push(element('p', {}, `The remaining difference is ${Number(found.residual.toPrecision(2))} degrees.`));
   if (found.furtherPose) {
     parts.push(element('p', { class: 'further' }, `To decide, ${found.furtherPose}, and paste that pose as well, on a line of its own.`));
   }
