@@ -601,7 +601,7 @@ class _Bench:
             return constant, False
         # From few poses a drift explains nearly anything.
         if len(poses) < 7 or abs(fit.drift[worst]) < max(
-            5 * fit.drift_spreads[worst], np.radians(1)
+            7 * fit.drift_spreads[worst], np.radians(1)
         ):
             return fit, False
         slope = fit.drift[worst] / np.ptp(self.warmth) if len(fits) > 1 and by_warmth else None
