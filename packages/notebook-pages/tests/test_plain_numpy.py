@@ -71,10 +71,9 @@ np.rint([0.5, 1.5, -0.2])
 np.round([1.005, 2.675, -0.04], 1), np.array([-0.2]).round(), np.sinc(v)
 np.isclose(v, v + 5e-3, 0, 1e-2)
 np.where(v > 0, v, 0), np.isfinite(v), np.isclose(v, v + 1e-9), np.allclose(v, v + 1e-3)
-np.cross(v, [1, 2, 3]), np.outer(v, v), np.cross(A, v), np.trace(A), np.diag([1, 2]), np.diag(A)
-np.linalg.inv(A), np.linalg.det(A).round(12), np.linalg.solve(A, v), np.linalg.solve(A, A)
+np.cross(v, [1, 2, 3]), np.cross(A, v), np.trace(A), np.diag([1, 2]), np.diag(A)
+np.linalg.det(A).round(12), np.linalg.det(S).round(12)
 np.linalg.svd(A, compute_uv=False), np.linalg.svd(A, True, False)
-np.linalg.eigvalsh(A + A.T).round(12)
 np.linalg.matrix_power(A, 5)
 np.stack([v, v], axis=-1), np.concatenate([A, A], axis=1), np.column_stack([v, v])
 np.broadcast_to(v, (2, 3))
@@ -93,8 +92,7 @@ S, S[:, None] - S[None], np.random.default_rng(3).normal(size=(2, 3))
 np.random.default_rng(0).uniform(-3, 3, 4)
 np.random.default_rng(2**70).normal(size=2)
 np.random.default_rng(7).normal(1.0, 2.0)
-np.percentile(v, 90), np.percentile(S, (5, 50, 95), axis=0), np.percentile(v, (5, 50, 95))
-A.trace(), A.transpose(), S.transpose(2, 0, 1).shape, A.copy()
+A.transpose(), S.transpose(2, 0, 1).shape, A.copy()
 A.T.reshape(-1), A.T.ravel()
 """.strip().splitlines()
 NAMES = "v, A, S"
@@ -136,8 +134,12 @@ A[[0, 1], [1, 2]]
 np.random.default_rng(1).integers(3)
 np.random.default_rng()
 np.random.normal()
-np.linalg.eig(A)
-np.linalg.inv(np.zeros((2, 2)))
+np.linalg.eigh(A)
+np.percentile(v, 90)
+np.outer(v, v)
+A.trace()
+v[:1].item()
+np.linalg.inv(A)
 np.array([True]) + np.array([True])
 np.zeros(2000).__repr__()
 np.arange(10**7) + 1
@@ -150,13 +152,12 @@ A.mean(axis=0, dtype=float)
 np.linalg.norm(v, 0)
 np.linalg.norm(A, 1)
 np.diff(v, 2)
-np.linalg.inv(np.array([[1.0, 2, 3], [4, 5, 6], [7, 8, 9]]))
 np.sum(A, 0, float)
 np.dot(v, v)
 v[0].sum()
 A.flatten()
 np.around(123.456, -1)
-np.linalg.solve(S, S)
+np.linalg.solve(A, v)
 np.random.default_rng(1).random()
 np.einsum('ij,j->i', A, v)
 float(np.array(0.5))
@@ -193,8 +194,8 @@ def ordinary_lines(count):
         if inspect.isfunction(value) or name == "linalg"
     ]
     functions = [name for name in functions if name not in ("np.linalg", "np.empty")]
-    # The signs of singular vectors and eigenvectors differ between processors, with NumPy too.
-    offered = set(plain_numpy.PARTS["linalg"].offered) - {"svd", "eigh"}
+    # The signs of singular vectors differ between processors, with NumPy too.
+    offered = set(plain_numpy.PARTS["linalg"].offered) - {"svd"}
     functions += [f"np.linalg.{name}" for name in sorted(offered)]
     operators = ["+", "-", "*", "/", "**", "@", "//", "%", "==", "<", "&", "|"]
     for _ in range(count):
@@ -348,10 +349,6 @@ def test_factors_multiply_to_the_matrix():
         )
         assert np.allclose(np.array((left @ left.swapaxes(-1, -2)).tolist()), np.eye(3), atol=1e-14)
         assert np.allclose(sizes.tolist(), np.linalg.svd(matrix)[1], atol=1e-14)
-        even, vectors = STAND_IN.linalg.eigh(ours @ ours.swapaxes(-1, -2))
-        assert np.allclose(even.tolist(), np.linalg.svd(matrix)[1][:, ::-1] ** 2, atol=1e-13)
-        product = vectors * even[..., None, :] @ vectors.swapaxes(-1, -2)
-        assert np.allclose(product.tolist(), matrix @ matrix.swapaxes(-1, -2), atol=1e-13)
     flat = STAND_IN.linalg.svd(STAND_IN.array([[1.0, 2, 3], [2, 4, 6], [0, 0, 0]]))
     assert np.allclose((flat[0] @ flat[0].T).tolist(), np.eye(3), atol=1e-14)
 

@@ -396,10 +396,6 @@ class Array:
     def tolist(self):
         return nested(self.values, self.shape)
 
-    def item(self):
-        (value,) = self.values
-        return value
-
     def __len__(self):
         if not self.shape:
             raise TypeError("len() of unsized object")
@@ -482,7 +478,7 @@ class Array:
             for part in index
         ]
         index = [
-            part.item()
+            part.values[0]
             if isinstance(part, Array) and part.shape == () and part.kind == "i"
             else part
             for part in index
@@ -594,9 +590,6 @@ class Array:
 
     def round(self, decimals=0):
         return around(self, decimals)
-
-    def trace(self):
-        return trace(self)
 
     def __str__(self):
         return written_array(self, " ", "")
@@ -1142,11 +1135,6 @@ def broadcast_shapes(*args):
 
 
 @offered
-def reshape(a, /, shape):
-    return as_array(a).reshape(shape)
-
-
-@offered
 def concatenate(arrays, /, axis=0):
     arrays = [as_array(array) for array in arrays]
     axis = range(arrays[0].ndim)[axis]
@@ -1353,32 +1341,6 @@ for _function in (sum_, mean, std):
 
 
 @offered
-def percentile(a, q, axis=None):
-    value, q = as_array(a, float), as_array(q)
-    if (
-        q.ndim > 1
-        or "b" in (q.kind, as_array(a).kind)
-        or not all_finite(value.values)
-        or not all(0 <= part <= 100 for part in q.values)
-    ):
-        raise ValueError("not finite")
-
-    def at(part):
-        def interpolated(values):
-            ordered, exact = sorted(values), part / 100 * (len(values) - 1)
-            below = math.floor(exact)
-            low, high = ordered[below], ordered[min(below + 1, len(values) - 1)]
-            share = exact - below
-            return high - (high - low) * (1 - share) if share >= 0.5 else low + (high - low) * share
-
-        return interpolated
-
-    if not q.shape:
-        return along(value, axis, at(q.item()))
-    return stack([along(value, axis, at(part)) for part in q.values])
-
-
-@offered
 def cumsum(a, axis=None):
     value = as_array(a)
     if axis is None:
@@ -1479,11 +1441,6 @@ def product(first, second):
 
 
 @offered
-def outer(a, b):
-    return as_array(a).reshape(-1, 1) * as_array(b).reshape(1, -1)
-
-
-@offered
 def cross(a, b):
     left, right = as_array(a), as_array(b)
     if left.shape[-1] != 3 or right.shape[-1] != 3:
@@ -1522,128 +1479,30 @@ def inner(x, y):
     return sum(map(operator.mul, x, y))
 
 
-def eliminated(rows, right, careful=True):
-    """Solve by Gaussian elimination with row exchanges; return the solution and the determinant."""
-    rows, right, n, determinant = (
-        [row[:] for row in rows],
-        [row[:] for row in right],
-        len(rows),
-        1.0,
-    )
-    largest_entry = max(abs(entry) for row in rows for entry in row)
-    for k in range(n):
-        best = max(range(k, n), key=lambda i: abs(rows[i][k]))
+def determinant(rows):
+    """Return the determinant by Gaussian elimination with row exchanges."""
+    rows, product_of_pivots = [row[:] for row in rows], 1.0
+    for k in range(len(rows)):
+        best = max(range(k, len(rows)), key=lambda i: abs(rows[i][k]))
         if best != k:
-            rows[k], rows[best], right[k], right[best] = rows[best], rows[k], right[best], right[k]
-            determinant = -determinant
+            rows[k], rows[best] = rows[best], rows[k]
+            product_of_pivots = -product_of_pivots
         pivot = rows[k][k]
-        if careful and 0 < abs(pivot) < 1e-10 * largest_entry:
-            raise ArithmeticError("nearly singular: every digit is rounding error")
-        determinant *= pivot
-        for i in range(k + 1, n):
-            if not pivot:
-                break
-            factor = rows[i][k] / rows[k][k]
+        product_of_pivots *= pivot
+        for i in range(k + 1, len(rows)):
+            factor = rows[i][k] / pivot if pivot else 0.0
             rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k])]
-            right[i] = [a - factor * b for a, b in zip(right[i], right[k])]
-    if right[0]:
-        for k in reversed(range(n)):
-            right[k] = [entry / rows[k][k] for entry in right[k]]
-            for i in range(k):
-                right[i] = [a - rows[i][k] * b for a, b in zip(right[i], right[k])]
-    return right, determinant
-
-
-@within("linalg")
-def solve(a, b):
-    stack_of, batch, n = matrices(a)
-    right = as_array(b, float)
-    if batch or right.ndim > 2 or right.shape[0] != n:
-        raise NotImplementedError("stacks, or another number of rows")
-    columns = right.shape[1] if right.ndim > 1 else 1
-    solution, _ = eliminated(stack_of[0], nested(right.values, (n, columns)))
-    return Array([entry for row in solution for entry in row], right.shape, "f")
-
-
-@within("linalg")
-def inv(a):
-    stack_of, batch, n = matrices(a)
-    unit = eye(n).tolist()
-    return Array(
-        [entry for rows in stack_of for row in eliminated(rows, unit)[0] for entry in row],
-        (*batch, n, n),
-        "f",
-    )
+    return product_of_pivots
 
 
 @within("linalg")
 def det(a):
-    stack_of, batch, n = matrices(a)
+    stack_of, batch, _ = matrices(a)
     # Its digits next to zero differ between processors, with NumPy too.
-    return result([eliminated(rows, [[]] * n, careful=False)[1] for rows in stack_of], batch, "f")
+    return result(list(map(determinant, stack_of)), batch, "f")
 
 
-def of_symmetric(rows):
-    """Return eigenvalues in ascending order and eigenvectors, as rows, by Jacobi rotations."""
-    a, n = [row[:] for row in rows], len(rows)
-    vectors = eye(n).tolist()
-    for _ in range(60):
-        if sum(a[p][q] ** 2 for p in range(n) for q in range(p)) < 1e-40 * sum(
-            a[p][p] ** 2 for p in range(n)
-        ):
-            break
-        for p in range(n):
-            for q in range(p + 1, n):
-                if not a[p][q]:
-                    continue
-                theta = (a[q][q] - a[p][p]) / (2 * a[p][q])
-                t = math.copysign(1, theta) / (abs(theta) + math.hypot(theta, 1))
-                c = 1 / math.hypot(t, 1)
-                s = t * c
-                for row in a:
-                    row[p], row[q] = c * row[p] - s * row[q], s * row[p] + c * row[q]
-                a[p], a[q] = (
-                    [c * x - s * y for x, y in zip(a[p], a[q])],
-                    [s * x + c * y for x, y in zip(a[p], a[q])],
-                )
-                vectors[p], vectors[q] = (
-                    [c * x - s * y for x, y in zip(vectors[p], vectors[q])],
-                    # fmt: skip
-                    [s * x + c * y for x, y in zip(vectors[p], vectors[q])],
-                )
-    order = sorted(range(n), key=lambda k: a[k][k])
-    return [a[k][k] for k in order], [vectors[k] for k in order]
-
-
-EighResult = collections.namedtuple("EighResult", "eigenvalues eigenvectors")
 SVDResult = collections.namedtuple("SVDResult", "U S Vh")
-
-
-def symmetric(a):
-    """Return symmetric matrices from the lower triangles, the only part that NumPy reads."""
-    stack_of, batch, n = matrices(a)
-    halves = range(n)
-    return (
-        [[[rows[max(p, q)][min(p, q)] for q in halves] for p in halves] for rows in stack_of],
-        batch,
-        n,
-    )
-
-
-@within("linalg")
-def eigh(a):
-    stack_of, batch, n = symmetric(a)
-    decompositions = [of_symmetric(rows) for rows in stack_of]
-    # A vector and its opposite are both right, and LAPACK does not specify which it returns.
-    vectors = [entry for _, rows in decompositions for column in zip(*rows) for entry in column]
-    sizes = Array([value for values, _ in decompositions for value in values], (*batch, n), "f")
-    return EighResult(sizes, Array(vectors, (*batch, n, n), "f"))
-
-
-@within("linalg")
-def eigvalsh(a):
-    stack_of, batch, n = symmetric(a)
-    return Array([value for rows in stack_of for value in of_symmetric(rows)[0]], (*batch, n), "f")
 
 
 def singular(rows):
