@@ -114,7 +114,7 @@ def test_a_mean_of_motion_that_is_taken_for_a_bias_costs():
     stretches = [
         (start, start + 0.5 * k) for k in (1, 2, 3, 4) for start in np.arange(0, 2.1 - 0.5 * k, 0.5)
     ]
-    for line in output_of("nothing removed", FILTERS)[1].splitlines()[2:6]:
+    for line in output_of("nothing subtracted", FILTERS)[1].splitlines()[2:6]:
         gain, nothing, _, low, high, worse, count = numbers(line)
         assert abs(left(gain, 0) - nothing) < 0.06
         removed = [
@@ -140,22 +140,20 @@ def test_two_tests_without_the_truth_convict_different_faults_and_neither_acquit
     nees, nis, by_nis, by_autocorrelation = (
         {name: row[k] for name, row in rows.items()} for k in (0, 3, 4, 5)
     )
-    low, high = rows["the truth"][1:3]
-    assert low < 6.3 and high > 5.9 and 5.7 < nees["the truth"] < 6.5
-    assert by_nis["the truth"] < 9 and by_autocorrelation["the truth"] < 9
+    low, high = rows["true noise"][1:3]
+    assert low < 6.3 and high > 5.9 and 5.7 < nees["true noise"] < 6.5
+    assert by_nis["true noise"] < 9 and by_autocorrelation["true noise"] < 9
     # Variances a quarter of the true ones everywhere, and so squares four times as large.
-    assert nees["all twice as good"] / nees["the truth"] == pytest.approx(4, rel=0.06)
-    assert by_nis["all twice as good"] == 100 and by_autocorrelation["all twice as good"] < 9
-    assert (
-        by_nis["gyroscope twice as good"] < 25 < 50 < by_autocorrelation["gyroscope twice as good"]
-    )
-    assert by_autocorrelation["gyroscope ten times as good"] > 90
-    assert nees["gyroscope half as good"] < 5 and nees["directions half as good"] < 5
-    assert nis["directions half as good"] == pytest.approx(0.5, abs=0.1)
+    assert nees["half, all sensors"] / nees["true noise"] == pytest.approx(4, rel=0.06)
+    assert by_nis["half, all sensors"] == 100 and by_autocorrelation["half, all sensors"] < 9
+    assert by_nis["half, gyroscope"] < 25 < 50 < by_autocorrelation["half, gyroscope"]
+    assert by_autocorrelation["a tenth, gyroscope"] > 90
+    assert nees["double, gyroscope"] < 5 and nees["double, directions"] < 5
+    assert nis["double, directions"] == pytest.approx(0.5, abs=0.1)
 
 
 def test_a_reset_keeps_a_filter_honest_and_the_whole_rotation_longest():
-    for line in output_of("def after_one_look", FILTERS)[1].splitlines()[1:]:
+    for line in output_of("def after_one_update", FILTERS)[1].splitlines()[1:]:
         degrees, none, _, _, printed, _, _, whole, _, _ = numbers(line)
         assert whole <= printed <= none and (degrees > 3 or none < 3.2)
         assert (none > 6 and whole < 3.4) if degrees == 12 else True
@@ -178,12 +176,12 @@ def test_a_gate_keeps_the_heading_past_a_car_in_every_draw():
 def test_no_setting_of_the_filter_on_the_recording_is_said_to_be_right():
     rows = [
         numbers(line)
-        for line in output_of("looks at every sample", FILTERS)[1].splitlines()
+        for line in output_of("update at every sample", FILTERS)[1].splitlines()
         if line[:8].strip()[:1] == "0"
     ]
     assert len(rows) == 10
-    for k, (_, _, _, remains, claims, force, field, alike_force, alike_field) in enumerate(rows):
-        assert remains > 0.5 and claims > 0.5 and not (1.8 < force < 2.2 and 1.8 < field < 2.2)
+    for k, (_, _, _, differs, claims, force, field, alike_force, alike_field) in enumerate(rows):
+        assert differs > 0.5 and claims > 0.5 and not (1.8 < force < 2.2 and 1.8 < field < 2.2)
         assert alike_field > 0.9 and (alike_force > 0.8) == (k < 5)
 
 
