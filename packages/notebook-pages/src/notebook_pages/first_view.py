@@ -25,7 +25,6 @@ WITHOUT_BOX = (
     nodes.raw,
     nodes.target,
     nodes.comment,
-    nodes.table,
     addnodes.index,
     nodes.section,
 )
@@ -42,9 +41,16 @@ def mark(app, doctree, docname):
     if app.builder.format != "html":
         return
     seen = 0
-    for block in blocks_of(doctree):
+    for block in list(blocks_of(doctree)):
         if seen > FIRST_VIEW:
-            block["classes"].append(LATER)
+            if isinstance(block, nodes.table):
+                # A table has to be laid out to know its size, a box around it does not.
+                around = nodes.container()
+                block.replace_self(around)
+                around.append(block)
+                around["classes"].append(LATER)
+            else:
+                block["classes"].append(LATER)
         seen += max(LINE, min(LARGEST, len(block.astext())))
 
 

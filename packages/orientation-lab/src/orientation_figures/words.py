@@ -91,6 +91,11 @@ class Words:
         depth = self.depth_of([point])
         return self.ellipse(self.on_sheet(point), [radius, 0], [0, radius], f"head {colour}", depth)
 
+    def dots(self, points, colour="ink"):
+        """Draw many dots as one path: a line without length has only its round ends."""
+        pairs = [self.on_sheet(point) for point in points for end in (0, 1)]
+        return self.path("ML" * len(points), pairs, f"thick {colour}", self.depth_of(points))
+
     def ring(self, point, colour="ink", radius=5):
         """Draw a small circle with a radius in pixels."""
         depth = self.depth_of([point]) + 1e-6

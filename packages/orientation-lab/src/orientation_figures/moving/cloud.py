@@ -33,7 +33,7 @@ class CloudFigure(MovingFigure):
 
     kind = "cloud"
     sheet = (-180, -160, 180, 160)
-    room = (516, 530)
+    room = (445, 530)
     large = Numbers(math.radians(30), largest=math.radians(120), smallest=0).tag(
         sync=True, state=True
     )

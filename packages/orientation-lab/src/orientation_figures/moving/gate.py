@@ -41,7 +41,7 @@ class GateFigure(MovingFigure):
 
     kind = "gate"
     sheet = (-180, -130, 180, 130)
-    room = (430, 470)
+    room = (345, 470)
     steel = traitlets.Enum(tuple(computed()["steels"]), 10).tag(sync=True, state=True)
     gate = traitlets.Enum(tuple(computed()["rejected"]), 0).tag(sync=True, state=True)
     table = traitlets.Dict().tag(sync=True, constant=True)

@@ -24,8 +24,8 @@ COMMAND = "python -m orientation_figures.moving.javascript"
 _NAMES = {"len": "{}.length", "abs": "Math.abs({})", "list": "[...{}]"}
 # Methods of a sheet that take their arguments in order, in both languages.
 _IN_ORDER = (
-    "area", "cylinder", "dot", "ellipse", "head", "label", "label_beyond", "line", "path", "ring",
-    "shadow", "text",
+    "area", "cylinder", "dot", "dots", "ellipse", "head", "label", "label_beyond", "line", "path",
+    "ring", "shadow", "text",
 )  # fmt: skip
 _METHODS = {
     "append": "push",

@@ -36,9 +36,8 @@ export function picture(sheet, large, small, body) {
   sheet.circle([0, 0, 1], { half: 'front', colour: 'muted', kind: 'faint' });
   sheet.circle([0, 0, 1], { half: 'back', colour: 'muted', kind: 'guide faint' });
   sheet.triad('N', IDENTITY, { length: 1.25 });
-  for (const dcm of dcms) {
-    sheet.dot(dcm[0], 'B', 1.6);
-    sheet.dot(dcm[2], 'D', 1.6);
+  for (const [row, colour] of [[0, 'B'], [2, 'D']]) {
+    sheet.dots(dcms.map((dcm) => dcm[row]), colour);
   }
   sheet.layer = 1;
   sheet.arrow(ESTIMATE[0], { colour: 'B', label: '$\\hat{b}_x$' });

@@ -49,6 +49,10 @@ export class Words {
     const depth = this.depthOf([point]);
     return this.ellipse(this.onSheet(point), [radius, 0], [0, radius], `head ${colour}`, depth);
   }
+  dots(points, colour = 'ink') {
+    const pairs = points.flatMap((point) => [0, 1].map((end) => this.onSheet(point)));
+    return this.path('ML'.repeat(points.length), pairs, `thick ${colour}`, this.depthOf(points));
+  }
   ring(point, colour = 'ink', radius = 5) {
     const depth = this.depthOf([point]) + 1e-6;
     const place = this.onSheet(point);

@@ -52,9 +52,8 @@ def picture(sheet, large, small, body):
     sheet.circle([0, 0, 1], half="front", colour="muted", kind="faint")
     sheet.circle([0, 0, 1], half="back", colour="muted", kind="guide faint")
     sheet.triad("N", IDENTITY, length=1.25)
-    for dcm in dcms:
-        sheet.dot(dcm[0], "B", 1.6)
-        sheet.dot(dcm[2], "D", 1.6)
+    for row, colour in ((0, "B"), (2, "D")):
+        sheet.dots([dcm[row] for dcm in dcms], colour)
     sheet.layer = 1
     sheet.arrow(ESTIMATE[0], colour="B", label=r"$\hat{b}_x$")
     sheet.arrow(ESTIMATE[2], colour="D", label=r"$\hat{b}_z$")
