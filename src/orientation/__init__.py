@@ -2,8 +2,8 @@
 
 Direction cosine matrices :math:`{}^A\\mathbf{C}^N` have :math:`A`'s unit vectors as rows, angles
 are in radians, quaternions have their scalar part first, and sequences are body fixed and lower
-case. Matrices, quaternions and axes in single precision are held to its digits, and give results in
-single precision.
+case. Matrices, quaternions and axes in single precision are checked to that precision, and give
+results in single precision.
 """
 
 from .angular_velocity import (

@@ -2,7 +2,7 @@
 
 SymPy has no types of its own. Its objects are recognised here, as in the functions themselves, by
 an attribute that no others have: free symbols. Annotations are not evaluated, so neither SymPy nor
-NumPy is loaded only for a name.
+NumPy is loaded just for a name.
 """
 
 from __future__ import annotations

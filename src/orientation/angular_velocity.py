@@ -115,8 +115,8 @@ def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Array | Matrix:
     dcm : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
         :math:`{}^A\mathbf{C}^N`.
     rate : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        Its time derivative, per second. If numbers of both are measured, the product is not quite
-        skew, and its skew part is taken.
+        Its time derivative, per second. If both are measured, the product is not quite skew, and
+        its skew part is taken.
 
     Returns
     -------

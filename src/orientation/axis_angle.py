@@ -183,7 +183,7 @@ def axis_angle_from_dcm(dcm: Values) -> tuple[Array, Scalars]:
 
     The quaternion of the matrix is found first, and
     :math:`\theta = 2\,\mathrm{atan2}(|\mathbf{q}_v|, |q_0|)`: exact to rounding from 0 to
-    :math:`\pi`, where the inverse cosine of the trace loses half of the digits.
+    :math:`\pi`, where the inverse cosine of the trace loses half the digits.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Decide whether two orientations are the same, and name the mix-up if they are not.
 
-Everything is decided by numbers, at random values of the symbols: an algebraic simplification can
+Every decision is made numerically, at random values of the symbols: an algebraic simplification can
 take seconds, or never finish. Like the conversions, this works on components, so symbols need no
 NumPy.
 """
@@ -129,8 +129,8 @@ def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE
     Raises
     ------
     ValueError
-        If one is a matrix and the other a quaternion, the shapes are neither, two batches differ in
-        shape, or a number is not finite.
+        If one is a matrix and the other a quaternion, the shapes are those of neither, two batches
+        differ in shape, or a number is not finite.
 
     Examples
     --------

@@ -275,12 +275,12 @@ def jacobian(
     Raises
     ------
     ValueError
-        If the conversion has no derivative there, as Euler angles at gimbal lock, or it returns a
-        matrix that is not a direction cosine matrix.
+        If the conversion has no derivative there, as for Euler angles at gimbal lock, or it returns
+        a matrix that is not a direction cosine matrix.
 
     Examples
     --------
-    A small turn about the last axis of the sequence changes the last angle alone:
+    A small rotation about the last axis of the sequence changes only the last angle:
 
     >>> from orientation import body_fixed_from_dcm, dcm_from_body_fixed, jacobian
     >>> D_C_A = dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy')

@@ -86,7 +86,7 @@ def dcm_from_body_fixed(angles: Values, sequence: AxisSequence) -> Array | Matri
     Returns
     -------
     SymPy matrix, array of shape ``(3, 3)`` or stack of shape ``(..., 3, 3)``
-        The matrix of the turned frame with respect to the first one.
+        The matrix of the rotated frame with respect to the first frame.
 
     Raises
     ------
@@ -105,8 +105,8 @@ def dcm_from_body_fixed(angles: Values, sequence: AxisSequence) -> Array | Matri
 
     Notes
     -----
-    The three turns are multiplied out once, for axes in cyclic order; the other order only changes
-    the sign of the angles. Source: Shuster (1993), Diebel (2006).
+    The three rotations are multiplied out once, for axes in cyclic order; the other order only
+    changes the sign of the angles. Source: Shuster (1993), Diebel (2006).
     In the book: :eq:`equation-gimbal-chain`.
     """
     return evaluate(body_fixed_formula(sequence), (3, 3), ("angles", angles, (3,)))
@@ -217,7 +217,7 @@ def dcm_from_space_fixed(angles: Values, sequence: AxisSequence) -> Matrix: ...
 def dcm_from_space_fixed(angles: Values, sequence: AxisSequence) -> Array | Matrix:
     r"""Direction cosine matrix of three rotations about the axes of the fixed frame.
 
-    Turning about fixed axes multiplies the matrices in the other order: for the sequence z-x-y,
+    Rotations about fixed axes multiply the matrices in the other order: for the sequence z-x-y,
 
     .. math::
 

@@ -25,14 +25,14 @@ class Innovation(NamedTuple):
     Attributes
     ----------
     difference : array of shape ``(..., 3)``
-        Measured less expected, :math:`\boldsymbol\nu`, along the body.
+        Measured minus expected, :math:`\boldsymbol\nu`, along the body.
     covariance : array of shape ``(..., 3, 3)``
         Of the difference, as the filter claims it before it corrects itself, :math:`\mathbf{S} =
         \mathbf{H}\mathbf{P}\mathbf{H}^T + \mathbf{R}`.
     normalised_square : array of shape ``(...)``
         NIS, :math:`\varepsilon = \boldsymbol\nu^T\mathbf{S}^{-1}\boldsymbol\nu`. No truth is
-        needed. If the claim is true it is 2 on average for a direction, which differs from another
-        in two ways, and 3 for a whole orientation.
+        needed. If the claim is true it is 2 on average for a direction, which can be wrong in two
+        ways, and 3 for a whole orientation.
     accepted : array of bool of shape ``(...)``
         Whether the square was within the gate. If not, the filter ignored the measurement.
     """
@@ -200,7 +200,7 @@ class MultiplicativeKalmanFilter:
         reference : array of shape ``(..., 3)``
             The same direction along :math:`N`, of any length.
         deviation : float or array of shape ``(...)``
-            Standard deviation across the direction, radians.
+            Standard deviation perpendicular to the direction, radians.
         gate : float, optional
             A direction whose normalised square is larger is not used. An honest filter rejects one
             in a hundred at 9.21, one in a thousand at 13.8 (:math:`\chi^2` with two degrees of

@@ -313,7 +313,7 @@ class Frames:
         r"""Direction cosine matrix of ``target`` with respect to ``source``, over their path.
 
         ``frames.dcm('D', 'A')`` is :math:`{}^D\mathbf{C}^A`, as ``D.dcm(A)`` is in SymPy.
-        Successive turns about one axis are joined to one turn before anything is multiplied.
+        Successive rotations about one axis are combined before anything is multiplied.
 
         Raises
         ------

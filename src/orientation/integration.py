@@ -24,8 +24,8 @@ def turns_from_angular_velocity(
 ) -> Array:
     r"""Return the rotation vector of each interval of time.
 
-    For a step of the duration :math:`h` from :math:`t`, order 1 takes the angular velocity at its
-    beginning, :math:`h\,\boldsymbol{\omega}(t)`, and order 2 that in its middle,
+    For a step of duration :math:`h` from :math:`t`, order 1 takes the angular velocity at its
+    beginning, :math:`h\,\boldsymbol{\omega}(t)`, and order 2 the one in its middle,
     :math:`h\,\boldsymbol{\omega}(t + \frac{h}{2})`. Order 4 takes it at the two Gauss points
     :math:`t + (\frac{1}{2} \mp \frac{\sqrt{3}}{6})h`, and adds the effect of the order of the
     rotations in between (Magnus):
@@ -39,7 +39,7 @@ def turns_from_angular_velocity(
     ----------
     angular_velocity : callable
         ``angular_velocity(times)`` takes an array of shape ``(n,)`` and returns the components
-        along the turning frame :math:`A`, shape ``(n, 3)``, radians per second. It is called once
+        along the rotating frame :math:`A`, shape ``(n, 3)``, radians per second. It is called once
         for each point of a step.
     times : array of shape ``(n + 1,)``
         Seconds.
@@ -108,9 +108,9 @@ def dcms_after_turns(start: Numbers, turns: Numbers) -> Array:
     Parameters
     ----------
     start : array of shape ``(3, 3)``
-        :math:`{}^A\mathbf{C}^N` before the first turn.
+        :math:`{}^A\mathbf{C}^N` before the first rotation.
     turns : array of shape ``(n, 3)``
-        Rotation vectors along the turning frame :math:`A`, radians, as those of
+        Rotation vectors along the rotating frame :math:`A`, radians, such as those of
         :func:`turns_from_angular_velocity` or the increments of a gyroscope.
 
     Returns

@@ -93,7 +93,7 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
     dcms : array of shape ``(n, 3, 3)``
         Direction cosine matrices with respect to one frame. Numbers only.
     weights : array of shape ``(n,)``, optional
-        Not negative, and not all zero. All the same if not given.
+        Not negative, and not all zero. All are equal by default.
     metric : {'entries', 'angle'}
 
     Returns

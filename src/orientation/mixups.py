@@ -13,8 +13,8 @@ def wrong_sign(*turns: str) -> str:
     --------
     >>> from orientation.mixups import wrong_sign
     >>> wrong_sign('first', 'third')
-    'the angles of the first and the third turn have the wrong sign'
+    'the angles of the first and the third rotation have the wrong sign'
     """
     if len(turns) == 1:
-        return f"the angle of the {turns[0]} turn has the wrong sign"
-    return f"the angles of the {' and the '.join(turns)} turn have the wrong sign"
+        return f"the angle of the {turns[0]} rotation has the wrong sign"
+    return f"the angles of the {' and the '.join(turns)} rotation have the wrong sign"

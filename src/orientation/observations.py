@@ -123,8 +123,8 @@ def dcm_from_directions(
     reference : array of shape ``(count, 3)`` or ``(..., count, 3)``
         The same directions :math:`\hat{n}_k` along :math:`N`.
     deviations : array of shape ``(count,)``, optional
-        Standard deviation :math:`\sigma_k` of each direction in radians, across it. If they are
-        omitted, all directions have the same weight.
+        Standard deviation :math:`\sigma_k` of each direction in radians, perpendicular to it. If
+        they are omitted, all directions have the same weight.
 
     Returns
     -------
@@ -187,7 +187,7 @@ def directions_covariance(observed: Numbers, deviations: Values) -> Array:
     observed : array of shape ``(count, 3)`` or ``(..., count, 3)``
         Directions along :math:`B`, of any length.
     deviations : array of shape ``(count,)``
-        Standard deviation of each in radians, in every direction across it.
+        Standard deviation of each in radians, in every direction perpendicular to it.
 
     Returns
     -------

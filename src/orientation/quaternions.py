@@ -148,8 +148,8 @@ def quaternion_components_from_dcm(
     zz: Number,
 ) -> tuple[Number, Number, Number, Number]:
     """Formula of :func:`quaternion_from_dcm`, shared with the axis and angle."""
-    # Each row is the quaternion times four times one of its components. The longest row loses no
-    # digits.
+    # Each row is four times the quaternion times one of its own components. The longest row loses
+    # no digits.
     above, below = 1 + xx, 1 - xx
     scores = [above + yy + zz, above - yy - zz, below + yy - zz, below - yy + zz]
     si, sj, sk, ij, ik, jk = yz - zy, zx - xz, xy - yx, xy + yx, xz + zx, yz + zy

@@ -1,8 +1,7 @@
 """Rodrigues (Gibbs) parameters and modified Rodrigues parameters: three numbers, by a tangent.
 
-Both are a stereographic picture of the unit quaternions: a line from the middle of the sphere, or
-from the quaternion -1, through the quaternion meets a flat space of three dimensions in the
-parameters.
+Both are projections of the unit quaternions: a line from the centre of the sphere, or from the
+quaternion -1, through the quaternion meets a flat three-dimensional space at the parameters.
 """
 
 from __future__ import annotations
@@ -89,8 +88,8 @@ def rodrigues_from_dcm(dcm: Values) -> Array:
     Raises
     ------
     ValueError
-        If the matrix is not a direction cosine matrix, or half a turn, whose parameters are
-        infinite.
+        If the matrix is not a direction cosine matrix, or is that of half a turn, whose parameters
+        are infinite.
     SymbolsNotPossible
         If the matrix holds symbols.
 
@@ -224,7 +223,7 @@ def shadow_of_modified_rodrigues(vector: Values) -> Array | Matrix:
     Parameters
     ----------
     vector : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
-        Not zero, since the shadow of no rotation is infinitely far away.
+        Not zero, since the shadow of the zero vector is infinitely far away.
 
     Returns
     -------

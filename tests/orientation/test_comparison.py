@@ -252,7 +252,9 @@ def rebuilt(cause, angles, sequence):
     if match := re.fullmatch(r"it is the sequence (...), not (...)", cause):
         assert match[2] == sequence
         return composed(angles, match[1])
-    if match := re.fullmatch(r"(?:the angle of the )?(\w+)(?: turn)? has the wrong sign", cause):
+    if match := re.fullmatch(
+        r"(?:the angle of the )?(\w+)(?: rotation)? has the wrong sign", cause
+    ):
         return composed(
             scaled(
                 angles,
@@ -341,7 +343,7 @@ def test_numerical_mixups_are_named(sequence):
     expected = composed(NUMBERS, sequence)
     sentences = [SENTENCES[key] for key in ("transpose", "order", "reverse")]
     sentences += [
-        f"the angle of the {which} turn has the wrong sign"
+        f"the angle of the {which} rotation has the wrong sign"
         for which in ("first", "second", "third")
     ]
     sentences += [
@@ -435,7 +437,7 @@ def test_given_angles_may_be_symbols():
 def test_given_angles_of_which_one_is_zero():
     expected = composed((0.3, 0, 0.5), "zxy")
     assert (
-        "the angle of the first turn has the wrong sign"
+        "the angle of the first rotation has the wrong sign"
         in diagnose(composed((-0.3, 0, 0.5), "zxy"), expected, (0.3, 0, 0.5), "zxy").causes
     )
 

@@ -165,7 +165,7 @@ def test_what_is_right_for_others_is_said_before_anything_else():
 
 ROUGH = Question("vector", salt="s", tolerance=0.01, length=2)
 CENTRE = [sm.Rational(1, 3), 2]
-OFF = "off by more than the 0.01 that is allowed. If you rounded, here or on the way, keep "
+OFF = "off by more than the 0.01 that is allowed. If you rounded, here or earlier, keep "
 
 
 def rough(*answers):

@@ -284,19 +284,19 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
             {"outcome": "timeout", "error": "It exceeded the time limit."},
             True,
             "undecided",
-            "stopped while it was read",
+            "interrupted while reading",
         ),
         (
             {"outcome": "killed", "error": "The process was killed by SIGKILL."},
             False,
             "undecided",
-            "stopped while it was read",
+            "interrupted while reading",
         ),
         (
             {"outcome": "unreadable", "why": CUT_SHORT[0]},
             True,
             "undecided",
-            "stopped while it was read",
+            "interrupted while reading",
         ),
         (
             {"outcome": "unreadable", "why": "An answer of type `module` cannot be read."},
@@ -321,7 +321,7 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
             {"outcome": "correct", "plain": {"value": ["blank"], "nodes": []}},
             True,
             "undecided",
-            "stopped while it was read",
+            "interrupted while reading",
         ),
     ],
 )

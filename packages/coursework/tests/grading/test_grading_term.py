@@ -331,8 +331,8 @@ def test_a_course_comes_to_a_page_for_each_student_and_a_table(out, rules):
     now = datetime.datetime(2026, 12, 1, tzinfo=UTC)
     said = write_course(Store(out), rules(roster=out.parent / "roster.csv"), now=now)
     assert said == [
-        "axes: 1 notebook came at an unknown time, so lateness cost them nothing. Give a table of "
-        "times from your system: "
+        "axes: 1 notebook came in at an unknown time, so lateness cost them nothing. Give a "
+        "table of times from your system: "
         'times = "worksheet.csv" in [assignments.axes].'
     ]
     rows = (out / "course" / "course.csv").read_text().splitlines()
@@ -427,7 +427,7 @@ def test_the_rules_of_the_term_reach_the_system(late, tmp_path, capsys):
     said = capsys.readouterr().out
     assert (
         "Not filled in, because excused in term.toml" in said
-        and "1 notebook came at an unknown time" in said
+        and "1 notebook came in at an unknown time" in said
     )
     main(["export", str(late.folder), "--nbgrader", str(tmp_path / "n.csv")])
     assert '"6","1.2","4.8"' in (tmp_path / "n.csv").read_text()

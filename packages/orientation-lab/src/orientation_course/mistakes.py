@@ -134,12 +134,12 @@ MESSAGES: dict[str, Callable[..., str]] = {
     ),
     "sequence reversed": lambda question: (
         "Are these rotations about axes fixed in space, or did you list them from the last to the "
-        "first? Each rotation is about an axis of the frame that the rotation before it has "
+        "first? Each rotation is about an axis of the frame that the previous rotation "
         "reached."
     ),
     "cosine for sine": lambda question: "You swapped sine and cosine.",
     # Of an axis and an angle: the axis is neither halved nor doubled.
-    "half": lambda question: "The angle is half of what it should be; the axis is right.",
+    "half": lambda question: "The angle is half what it should be; the axis is right.",
     "double": lambda question: "The angle is twice what it should be; the axis is right.",
 }
 

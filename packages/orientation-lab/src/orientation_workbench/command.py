@@ -187,7 +187,7 @@ def _declared(words):
 def _explain(chosen):
     try:
         if not chosen.noise >= 0:
-            raise ValueError(f"--noise is {chosen.noise:g}: give degrees, from 0 on")
+            raise ValueError(f"--noise is {chosen.noise:g}: give degrees, at least 0")
         texts = [_given(chosen.first), _given(chosen.second)]
         declared = [_declared(words) for words in (chosen.first_is, chosen.second_is)]
         found = explain(

@@ -325,7 +325,7 @@ def spoilt(kind, change):
         (spoilt("time", lambda values: 0 * values), "no time column"),
         (spoilt("gyroscope", lambda values: np.tile(values[:1], (len(values), 1))), "never change"),
         (spoilt("accelerometer", lambda values: 0 * values), "never change"),
-        (spoilt("gyroscope", lambda values: 1e12 * values), "rotates so fast"),
+        (spoilt("gyroscope", lambda values: 1e12 * values), "rotates that fast"),
         (
             spoilt(
                 "magnetometer",

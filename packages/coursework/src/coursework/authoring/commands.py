@@ -35,7 +35,7 @@ ARGUMENTS = {
         "create a small course, ready to use",
         [
             argument(
-                "course", metavar="COURSE", help="the folder to create; the course takes its name"
+                "course", metavar="COURSE", help="the folder to create, which also names the course"
             )
         ],
     ),

@@ -14,7 +14,7 @@ CELLS = [
     "# First steps\n"
     "\n"
     "Run the cell below first. "
-    "Then answer in place of the dots and run the check.",
+    "Then replace the dots with your answer and run the check.",
     "import sympy as sm\nfrom coursework import check\n\nb, h, x = sm.symbols('b, h, x')",
     "## Area\n"
     "\n"

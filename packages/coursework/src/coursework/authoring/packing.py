@@ -66,7 +66,7 @@ README = """Exercises of {title}
        python -m pip install -r requirements.txt
 
    These lines install the package that came with the exercises. Do not run "pip install
-   coursework": the project of that name on the index is somebody else's.
+   coursework": the project of that name on the index belongs to somebody else.
 
    The folder "environment" contains Python and the packages that the exercises need, separate
    from your system's Python. If somebody gave you a folder "wheels" for a room without a network,
@@ -78,9 +78,9 @@ README = """Exercises of {title}
 
        jupyter lab
 
-Answer in place of the dots and run the check below each question. It tells you whether the answer
-is right, or what you mixed up. Your progress is kept in the folder .coursework beside the notebooks
-and nowhere else.
+Replace the dots with your answer and run the check below each question. It tells you whether
+the answer is right, or what you mixed up. Your progress is kept in the folder .coursework
+beside the notebooks and nowhere else.
 
 When there is a newer archive, do not unpack it over your work. Run
 

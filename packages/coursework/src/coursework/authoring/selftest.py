@@ -302,7 +302,7 @@ def told_openly(question: AuthoredQuestion, secrets: Secrets) -> list[str]:
         for code in re.findall(r"`([^`]+)`", step):
             if _judge_code(question, code) == "correct":
                 faults.append(f"{openly} gives the right answer: {step}")
-    return [f"{fault} Lock it up as one of its `hints` or in `after`." for fault in faults]
+    return [f"{fault} Seal it instead, in `hints` or in `after`." for fault in faults]
 
 
 def _judge_code(question: AuthoredQuestion, code: str) -> str:

@@ -461,8 +461,8 @@ def _close(name: str, question: Question) -> Reply:
     """Return the reply to an answer that is, or seems to be, wrong only by rounding."""
     allowed = "" if question.tolerance is None else f" the {question.tolerance:g} that is"
     message_text = (
-        f"This is close, but off by more than{allowed} allowed. If you rounded, here or on the "
-        "way, keep all digits until the end."
+        f"This is close, but off by more than{allowed} allowed. If you rounded, here or earlier, "
+        "keep all digits until the end."
     )
     return Reply(name, "wrong", "rounded too far", [message_text])
 

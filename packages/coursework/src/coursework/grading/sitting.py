@@ -108,7 +108,7 @@ def sitting(
             path = desk.store.folder / FILE
             with path.open("a", encoding="utf8") as file:
                 file.write(f"\n[assignments.{json.dumps(name)}]\nquestions = {list(questions)}\n")
-            desk.tell(f"We added the sitting to {path}: set there how much it counts.")
+            desk.tell(f"We added the sitting to {path}. In that file, set how much it counts.")
         settled = (desk.marked(_on_paper(desk, person, name, people)) for person in people.people)
         desk.settle(settled, "printed again")
         desk.report(course)

@@ -250,8 +250,8 @@ def bring_answers_first(target):
         f"await Promise.race([import('{script}').catch(() => import('{script}?again')), "
         "new Promise((_, giveUp) => setTimeout(giveUp, 10_000, new Error('no answer after ten "
         "seconds')))]).then((first) => first.prepare())"
-        ".catch((error) => console.warn(`The answers from the page are not in this notebook yet: "
-        "${error.message}`));\n"
+        ".catch((error) => console.warn(`The answers from the page have not reached this notebook "
+        "yet: ${error.message}`));\n"
         "        "
     )
     after, count = start.subn(lambda match: wait + match[0], before)

@@ -348,7 +348,7 @@ def _question(names, best):
     )
     asked = {
         "Did angles or a quaternion pass from one program to the other?": any(
-            "on the way" in name.faults[0] for name in names
+            "intermediate" in name.faults[0] for name in names
         ),
         "Does the scalar part of the quaternions come first or last?": order,
         "Are the body's axes the rows or the columns of the first matrix?": way

@@ -65,7 +65,7 @@ SPELLING = {
         (
             r"^\s*HIERARCHY\b[\s\S]*^\s*MOTION\b",
             "a whole BVH file. From a line below MOTION, paste only the three angles of one joint, "
-            "and give their sequence, which is that of the joint's CHANNELS",
+            "and give their sequence, from the joint's CHANNELS line",
         ),
         (
             r"\d\s*(?:[\u00b0\u00ba\u02da]|d(?:eg(?:rees)?)?\b)\s*[0-5]?\d(?:[.,]\d+)?\s*"
@@ -78,7 +78,7 @@ SPELLING = {
         (
             r"^(?=.*\b(?:[2-9]|\d\d+)\b)"
             r"(?:[ \t]*-?\d{1,3}[ \t]+[0-5]?\d[ \t]+[0-5]?\d(?:\.\d+)?\b[,;]?){3}[ \t]*$",
-            f"no matrix, and looks like three angles in {_MINUTES}",
+            f"not a matrix; it looks like three angles in {_MINUTES}",
         ),
     ),
     # In this order: pattern and what takes its place; the first four before tables too.

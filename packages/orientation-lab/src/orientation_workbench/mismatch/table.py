@@ -418,7 +418,7 @@ def _strange(axes):
 def _words_inside(what, read, built, places):
     if what == "quaternion":
         return (
-            f"a quaternion on the way was stored as {', '.join(read)} and read as "
+            f"an intermediate quaternion was stored as {', '.join(read)} and read as "
             f"{', '.join(built)}, or vice versa"
         )
     put = f"{'-'.join(built)} (body fixed), taking them in the order {', '.join(places)}"
@@ -427,8 +427,7 @@ def _words_inside(what, read, built, places):
         "321": f"{'-'.join(built[::-1])} (space fixed)",
     }.get(places, put)
     return (
-        f"angles on the way: they were computed as {'-'.join(read)} (body fixed) and "
-        f"combined as {put}"
+        f"intermediate angles were computed as {'-'.join(read)} (body fixed) and combined as {put}"
     )
 
 
@@ -655,8 +654,8 @@ TAUGHT = {
     "world": (
         (f"{_CARD}#frames-of-the-earth-and-of-machines", "Frames of the Earth and of machines"),
         (
-            "exercises/reference-frames.html#where-is-the-north-a-phone-finds-out",
-            "Where is the north? A phone finds out",
+            "exercises/reference-frames.html#where-is-north-a-phone-finds-out",
+            "Where is north? A phone finds out",
         ),
     ),
     "hand": (

@@ -209,7 +209,7 @@ class _Bench:
                 "longest (s)": round(float(steps.max()), 4),
                 "share lost": round(lost, 4),
             },
-            "No filter can know what happened in a gap.",
+            "No filter can know what happened during a gap.",
         )
         every = np.concatenate(list(self.raw.values()), axis=1)
         same = float((np.diff(every, axis=0) == 0).all(axis=1).mean())
@@ -301,8 +301,8 @@ class _Bench:
             self.say(
                 "size of the gyroscope",
                 RED,
-                f"one value in twenty is above {most:.2g} °/s: nothing that is held or flown "
-                "rotates so fast",
+                f"one value in twenty is above {most:.2g} °/s: nothing held or flown "
+                "rotates that fast",
                 {},
                 "Is it a different column, or a different unit?",
             )

@@ -209,8 +209,8 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
     if examined.rates is not None:
         still = sum(stretch.still for stretch in examined.still)
         words = (
-            f"How fast it rotates. Shaded: the stretches in which it lies still ({still}) and in "
-            f"which it is held ({len(examined.still) - still})."
+            f"How fast it rotates. Shaded: the stretches during which it lies still ({still}) and "
+            f"in which it is held ({len(examined.still) - still})."
         )
         with drawing(2.6, words, "time (s)", "rate (°/s)") as axes:
             rates = np.degrees(np.linalg.norm(examined.rates[few], axis=1))
@@ -225,7 +225,7 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
             "Allan deviation of the gyroscope in its longest still stretch. "
             "Where it halves as the time quadruples, it is white noise, and the value "
             "of that line at one second is the angle random walk. The lowest point is the bias "
-            "instability, if the stretch is long enough to reach it."
+            "instability, if the stretch is long enough to show it."
         )
         with drawing(3.2, words, "averaged over (s)", "Allan deviation (°/s)") as axes:
             for values, letter, style in zip(deviations.T, "xyz", ("-", "--", ":"), strict=True):

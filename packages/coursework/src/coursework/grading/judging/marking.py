@@ -524,7 +524,7 @@ def judge(
     if state != "recorded":
         return _undecided(
             name,
-            "stopped while it was read",
+            "interrupted while reading",
             f"We had to stop reading this answer. {answer.why or answer.error or ''}".strip(),
         ), ""
     found: list[str] = []
@@ -538,7 +538,7 @@ def judge(
         plain = in_calls_of(question, read_plain(answer.plain))
         if plain is None:
             said = (
-                "We have not called the function with this question's present arguments. Grade "
+                "We have not called the function with this question's current arguments. Grade "
                 "again to run it."
             )
             return _undecided(name, "not called", said), ""

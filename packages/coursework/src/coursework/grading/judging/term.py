@@ -379,7 +379,7 @@ time-zone = {zone}  # of the times below
 attempts = "newest in time"
 
 [late]
-# grace-minutes = 15      # being this many minutes late costs nothing
+# grace-minutes = 15      # this many minutes late cost nothing
 # a-day = 0.1             # share of the points deducted for each day, or part of a day
 # most = 0.5              # the largest share that lateness can cost
 # nothing-after-days = 7  # work later than this earns no points
@@ -809,11 +809,11 @@ def unknown_times(results: Iterable[Result], term: Term) -> list[str]:
     if marked and term.late.marked is None and term.late.costs:
         raise BadTerm(
             f"Of {', '.join(sorted(set(marked)))}, {len(marked)} are marked as late by the "
-            "system, which does not say when they came. Set the cost, as marked = 0.1 (or 0) in "
-            "[late], or give a table of times."
+            "system, which does not say when they came in. Set the cost, such as marked = 0.1 "
+            "(or 0) in [late], or give a table of times."
         )
     return [
-        f"{name}: {number_of(unknown.count(name), 'notebook')} came at an unknown time, so "
+        f"{name}: {number_of(unknown.count(name), 'notebook')} came in at an unknown time, so "
         "lateness cost them nothing. Give a table of times from your system: "
         f'times = "worksheet.csv" in [assignments.{name}].'
         for name in sorted(set(unknown))

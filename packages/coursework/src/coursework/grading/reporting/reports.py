@@ -43,7 +43,7 @@ DEEDS = {
     "opposite": "gave the opposite",
     "reciprocal": "gave the reciprocal",
     "factor": "gave {factor} times the answer",
-    "one wrong": "has one of the {number} wrong",
+    "one wrong": "got one of the {number} wrong",
     "rounded too far": "rounded too far",
     "half": "gave half the answer",
     "double": "gave twice the answer",
@@ -74,7 +74,7 @@ NOTES = {
     "The answers count, but next time choose *Restart the kernel "
     "and run all cells* before you hand in.",
     "wrote into the records": "Its code wrote where answers are recorded. "
-    "We treated what it wrote as nothing more than an answer.",
+    "We treated what it wrote only as an answer.",
     "could not be run": "We could not run it. Your instructor will look at it.",
 }
 

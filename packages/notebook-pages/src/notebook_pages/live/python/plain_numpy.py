@@ -391,7 +391,7 @@ class Array:
         return getattr(self.__array__(), name)
 
     def __reduce__(self):
-        raise TypeError("an array of the page's own cannot be copied in this way")
+        raise TypeError("an array that belongs to the page cannot be copied in this way")
 
     def tolist(self):
         return nested(self.values, self.shape)

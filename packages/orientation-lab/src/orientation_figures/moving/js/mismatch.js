@@ -739,9 +739,9 @@ function namedAxes(relation, swapped, table) {
 }
 
 function insideWords([what, read, built, places]) {
-  if (what === 'quaternion') return `a quaternion on the way was stored as ${[...read].join(', ')} and read as ${[...built].join(', ')}, or vice versa`;
+  if (what === 'quaternion') return `an intermediate quaternion was stored as ${[...read].join(', ')} and read as ${[...built].join(', ')}, or vice versa`;
   const put = places === '321' ? `${[...built].reverse().join('-')} (space fixed)` : `${[...built].join('-')} (body fixed)${places === '123' ? '' : `, taking them in the order ${[...places].join(', ')}`}`;
-  return `angles on the way: they were computed as ${[...read].join('-')} (body fixed) and combined as ${put}`;
+  return `intermediate angles were computed as ${[...read].join('-')} (body fixed) and combined as ${put}`;
 }
 
 // Whether the second side's numbers are the inverse of what is meant: all answers that are open.
@@ -809,7 +809,7 @@ function namesOf(best, others, known, ways, table) {
   }
   if (names.length < 2) return { names: [], question: '' };
   const differ = (what) => new Set(names.map(({ declare }) => declare[0][what])).size > 1, asked = [];
-  if (names.some(({ faults }) => faults[0].includes('on the way'))) asked.push('Did angles or a quaternion pass from one program to the other?');
+  if (names.some(({ faults }) => faults[0].includes('intermediate'))) asked.push('Did angles or a quaternion pass from one program to the other?');
   if (differ('order')) asked.push('Does the scalar part of the quaternions come first or last?');
   if (differ('way')) {
     asked.push([best.first.kind, best.second.kind].includes('matrix') ? 'Are the body\'s axes the rows or the columns of the first matrix?'
