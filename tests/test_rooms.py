@@ -84,23 +84,6 @@ def test_grading_follows_a_notebook_on_its_way(room):
     assert foreign(f"coursework.grading.{room}", allowed) == []
 
 
-def test_checking_has_no_circles():
-    """This includes circles that an import within a function hides."""
-    folder, sources = folder_of("coursework.checking"), folder_of("coursework").parent
-    uses = {
-        path.stem: {
-            name.split(".")[2]
-            for name in imported(path, sources)
-            if name.startswith("coursework.checking.")
-        }
-        for path in folder.glob("*.py")
-    }
-    while first := [name for name, others in uses.items() if not others & set(uses)]:
-        for name in first:
-            del uses[name]
-    assert not uses, "each of these is used by what it uses"
-
-
 def test_every_package_is_registered():
     """This covers all package folders but the one that makes the pages."""
     folders = {path.parent for path in REPOSITORY.glob("src/*/__init__.py")}
@@ -200,6 +183,7 @@ def circles():
 
 
 def test_no_modules_need_each_other():
+    """This includes circles that an import within a function hides."""
     assert circles() == set()
 
 

@@ -14,15 +14,12 @@ from urllib.parse import unquote, urldefrag, urljoin
 
 import numpy as np
 import pytest
-from bs4 import BeautifulSoup
 from PIL import Image
 from places import HTML, REPOSITORY, every_day, html_pages
 from playwright.sync_api import TimeoutError
 
 import orientation_recordings as recordings
 from notebook_pages import mathematics, page
-from notebook_pages.paths import pages
-from notebook_pages.spoken import spoken
 from orientation_figures.plot import Plot
 
 PAGES = html_pages()
@@ -609,15 +606,3 @@ def test_letters_are_drawn_once_and_a_blank_not_at_all():
     assert len({outline for _, outline in outlines}) == len(outlines)
     links = re.findall(r'<use [^>]*href="#([^"]*)"', body)
     assert set(links) == {name for name, _ in outlines} and links.count(links[0]) >= 2
-
-
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize("page", pages())
-def test_every_formula_of_the_page_can_be_said(page):
-    """The words contain no symbols and no TeX."""
-    for math in dict.fromkeys(
-        re.findall(r"<math\b.*?</math>", (HTML / f"{page}.html").read_text("utf8"), re.DOTALL)
-    ):
-        words = spoken(BeautifulSoup(math, "lxml").math)
-        assert re.fullmatch(r"[A-Za-z0-9 ,.;:\u00a0'’-]+", words), f"{words!r} from {math}"
-        assert not re.search(r"[,;] ?[,;]|  ", words), words
