@@ -27,7 +27,7 @@ def reference():
         for argument in arguments
         if times[str(argument)] > 1
     }
-    parts = [("several commands", "what they have in common", list(several.values()))]
+    parts = [("common options", "shared by several commands", list(several.values()))]
     for command, (does, arguments) in ARGUMENTS.items():
         own = [argument for argument in arguments if str(argument) not in several]
         parts.append((f"coursework {command}", does, own))

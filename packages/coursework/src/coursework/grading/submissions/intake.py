@@ -447,7 +447,7 @@ NO_GROUP = (
     "Several students handed this in together, but they are not a group in term.toml. Add them "
     "under [groups], such as team-1 = ['ada', 'ben']."
 )
-NOT_MATCHED = "Write the name of its folder or file in the roster's column `handed in as`."
+NOT_MATCHED = "In the roster, write the name of its folder or file in a column `handed in as`."
 
 
 def _without_conflicts(
