@@ -62,7 +62,10 @@ def test_a_chapter_is_read_first_and_practised_at_its_end(name):
     kinds = [box[1] for box in BOXES.finditer(practice)]
     assert "predict" not in kinds and "exercise" in kinds and "recap" not in kinds[1:]
     assert reading.rstrip().endswith(":::") or ":class: summary" in reading
-    for question in re.findall(r"^```\{question\}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
+    assert "admonition} Predict" not in text, "a prediction can be answered on the page"
+    for question in re.findall(
+        r"^```\{(?:question|predict)\}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL
+    ):
         assert len(re.findall(r"\n\n(?=[^\n]+\n: )", question)) >= 2, question
     for exercise in re.findall(
         r"^`{3,}\{exercise\}.*?\n(.*?)^`{3,}$", text, re.MULTILINE | re.DOTALL
@@ -121,15 +124,6 @@ def test_a_chapter_has_sealed_questions(name):
 def test_directives_begin_their_line(name):
     """Within a line, directives would be printed as they are, without a warning."""
     assert re.findall(r"^[^`:\n].*(?:`{3,}|:{3,})\{[\w-]+\}.*$", text_of(name), re.MULTILINE) == []
-
-
-@pytest.mark.parametrize("name", ALL)
-def test_a_prediction_is_a_question_and_not_only_a_box(name):
-    """A prediction can be answered on the page, and every choice has its reply."""
-    text = text_of(name)
-    assert not re.search(r"admonition\} Predict", text)
-    for question in re.findall(r"^```\{predict\}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
-        assert len(re.findall(r"\n\n(?=[^\n]+\n: )", question)) >= 2, question
 
 
 # --- chapter 1: hands -----------------------------------------------------------------------------

@@ -880,6 +880,13 @@ def marks(course):
     return gradebooks.Marks(Store(course / "out"))
 
 
+def fill(tmp_path, marks, text, **options):
+    """Fill a gradebook, and return what is said and the lines of the filled one."""
+    (tmp_path / "book.csv").write_text(text, "utf8")
+    said = gradebooks.fill(tmp_path / "book.csv", marks, **options)
+    return "\n".join(said), (tmp_path / "book-filled.csv").read_text("utf8").splitlines()
+
+
 CANVAS = (
     'Student,ID,SIS User ID,SIS Login ID,Section,Turns (77),"Final, all"\r\n'
     "    Points Possible,,,,,12,(read only)\r\n"
@@ -950,47 +957,39 @@ def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(
 
 def test_what_stands_in_a_gradebook_stays_unless_told(marks, tmp_path):
     """Canvas's EX excuses a student; a mark that a person entered is not lost unsaid."""
-    path = tmp_path / "book.csv"
-    path.write_text(
+    text = (
         "Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\nA,1,,right,,EX\n"
         "B,2,,mistaken,,5.00\n"
         "C,3,,blank,,0.00\nD,4,,warns,,\n"
     )
-    said = "\n".join(gradebooks.fill(path, marks))
-    after = (tmp_path / "book-filled.csv").read_text().splitlines()
+    said, after = fill(tmp_path, marks, text)
     assert [line.rpartition(",")[2] for line in after[1:]] == ["EX", "5.00", "0", "6"]
     assert (
         "right: EX, and graded 6" in said
         and "mistaken: 5.00, and graded 4" in said
         and "blank:" not in said
     )
-    said = "\n".join(gradebooks.fill(path, marks, overwrite=["mistaken", "right"], dry_run=True))
-    assert (
-        "We wrote nothing" in said
-        and (tmp_path / "book-filled.csv").read_text().splitlines() == after
-    )
-    said = "\n".join(gradebooks.fill(path, marks, overwrite=["mistaken", "right"]))
-    after = (tmp_path / "book-filled.csv").read_text().splitlines()
+    said, again = fill(tmp_path, marks, text, overwrite=["mistaken", "right"], dry_run=True)
+    assert "We wrote nothing" in said and again == after
+    said, after = fill(tmp_path, marks, text, overwrite=["mistaken", "right"])
     # An excuse is none that could be written over; a mark by hand is, of whom it is said.
     assert [line.rpartition(",")[2] for line in after[1:]] == ["EX", "4", "0", "6"]
     assert "mistaken: 5.00 -> 4" in said.partition("overridden as you asked")[2]
     with pytest.raises(gradebooks.CannotExport, match="'nobody', who is not in"):
-        gradebooks.fill(path, marks, overwrite=["nobody"])
+        fill(tmp_path, marks, text, overwrite=["nobody"])
 
 
 @pytest.mark.parametrize("language", languages.LANGUAGES)
 def test_a_worksheet_of_moodle_in_another_language_is_filled(marks, tmp_path, language):
     words = [word.partition("|")[0] for word in languages.LANGUAGES[language]]
     identifier, name, number, email, _, grade, most, may, no = words
-    path = tmp_path / "book.csv"
-    path.write_text(
+    said, lines = fill(
+        tmp_path,
+        marks,
         f"{identifier},{name},{number},{email},{grade},{most},{may or 'x'}\n"
         f'A1,Right,right,r@x.example,,"3,00",+\nA2,Mistaken,mistaken,m@x.example,,"3,00",{no}\n'
         'A3,Broken,broken,b@x.example,,"3,00",+\n',
-        "utf8",
     )
-    said = "\n".join(gradebooks.fill(path, marks))
-    lines = (tmp_path / "book-filled.csv").read_text("utf8").splitlines()
     assert (
         f"Moodle: column {grade!r}" in said
         and 'x.example,3,"3,00"' in lines[1]
@@ -998,20 +997,18 @@ def test_a_worksheet_of_moodle_in_another_language_is_filled(marks, tmp_path, la
     )
     closed = "mistaken" in said.partition("allows no change")[2]
     assert ('x.example,,"3,00"' in lines[2] and closed) == bool(may)
+    roster = Roster(tmp_path / "book.csv")
     assert (
-        Roster(path).find((("moodle", "1"),))[0]
-        == Roster(path).find((("own", "r@x.example"),))[0]
-        == "right"
+        roster.find((("moodle", "1"),))[0] == roster.find((("own", "r@x.example"),))[0] == "right"
     )
 
 
 def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
-    path = tmp_path / "book.csv"
-    path.write_text("Tunniste,Koko nimi,Numero,Arvosana,Paras\nOsallistuja9,A,right,,6\n", "utf8")
+    text = "Tunniste,Koko nimi,Numero,Arvosana,Paras\nOsallistuja9,A,right,,6\n"
     with pytest.raises(
         gradebooks.CannotExport, match=r"German, .*\[gradebook\], and below it identifier = "
     ) as found:
-        gradebooks.fill(path, marks)
+        fill(tmp_path, marks, text)
     assert "Its columns: Tunniste, Koko nimi" in str(found.value)
     names = {
         "identifier": "Tunniste",
@@ -1020,39 +1017,31 @@ def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
         "grade": "Arvosana",
     }
     marks = gradebooks.Marks(marks.store, term=replace(marks.term, gradebook=names))
-    gradebooks.fill(path, marks)
-    assert (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[
-        1
-    ] == "Osallistuja9,A,right,6,6"
+    assert fill(tmp_path, marks, text)[1][1] == "Osallistuja9,A,right,6,6"
     with pytest.raises(gradebooks.CannotExport, match="no column 'Note'"):
         marks.term = replace(marks.term, gradebook={"grade": "Note"})
-        gradebooks.fill(path, marks)
+        fill(tmp_path, marks, text)
 
 
 def test_a_gradebook_of_canvas_with_names_in_two_columns_and_other_numbers(marks, tmp_path):
     """Its columns are English everywhere; numbers are as the language writes them."""
-    path = tmp_path / "book.csv"
-    path.write_text(
+    text = (
         "\ufeffLastName;FirstName;ID;SIS Login ID;Section;Turns (7)\n"
         "    Points Possible;;;;;12,00\n"
-        "A;Right;1;right;x;\nB;Broken;2;broken;x;\nC;Excused;3;mistaken;x;N/A\n",
-        "utf8",
+        "A;Right;1;right;x;\nB;Broken;2;broken;x;\nC;Excused;3;mistaken;x;N/A\n"
     )
-    said = "\n".join(gradebooks.fill(path, marks))
-    lines = (tmp_path / "book-filled.csv").read_text("utf8").splitlines()
+    said, lines = fill(tmp_path, marks, text)
     assert lines[2:] == [
         "A;Right;1;right;x;12",
         "B;Broken;2;broken;x;10",
         "C;Excused;3;mistaken;x;N/A",
     ]
     assert "mistaken: N/A, and graded 8" in said
-    path.write_text(path.read_text("utf8").replace("12,00", "3,00"), "utf8")
-    gradebooks.fill(path, marks)
-    assert (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[
-        3
-    ] == "B;Broken;2;broken;x;2,5"
-    assert Roster(path).find((("canvas", "2"),)) == ("broken", "Canvas's number")
-    assert Roster(path).find((("name", "Right A"),))[0] == "right"
+    _, lines = fill(tmp_path, marks, text.replace("12,00", "3,00"))
+    assert lines[3] == "B;Broken;2;broken;x;2,5"
+    roster = Roster(tmp_path / "book.csv")
+    assert roster.find((("canvas", "2"),)) == ("broken", "Canvas's number")
+    assert roster.find((("name", "Right A"),))[0] == "right"
 
 
 @pytest.mark.parametrize(
@@ -1069,13 +1058,11 @@ def test_a_gradebook_that_is_not_changed_is_the_same_bytes(data):
 
 
 def test_two_of_one_name_are_not_filled_in(marks, tmp_path):
-    path = tmp_path / "book.csv"
-    path.write_text(
+    text = (
         'Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\n"A",1,,right,,\n"B",2,,right,,\n'
     )
-    said = gradebooks.fill(path, marks)
-    assert "right" in "\n".join(said).partition("ambiguous")[2]
-    assert (tmp_path / "book-filled.csv").read_text() == path.read_text()
+    said, lines = fill(tmp_path, marks, text)
+    assert "right" in said.partition("ambiguous")[2] and lines == text.splitlines()
 
 
 @pytest.mark.parametrize(
@@ -1090,10 +1077,8 @@ def test_two_of_one_name_are_not_filled_in(marks, tmp_path):
     ],
 )
 def test_a_gradebook_that_cannot_be_filled_is_said(marks, tmp_path, header, message):
-    path = tmp_path / "book.csv"
-    path.write_text(header)
     with pytest.raises(gradebooks.CannotExport) as error:
-        gradebooks.fill(path, marks)
+        fill(tmp_path, marks, header)
     assert message in str(error.value)
 
 
