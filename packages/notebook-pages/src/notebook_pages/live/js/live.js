@@ -39,19 +39,17 @@ class Page {
     this.askWho();
   }
 
-  // Somebody goes to the code of a cell: the cursor stands where they pointed, or at the end. ``keys`` were pressed
-  // before there was an editor.
-  write(cell, point, keys) {
+  // Somebody goes to the code of a cell: the cursor stands where they pointed, or at the end. ``field`` has taken what
+  // was written before there was an editor (see page.js).
+  write(cell, point, field) {
+    const stays = document.activeElement === field;
     cell.edit();
-    const { editor } = cell;
-    editor.focus();
-    editor.dispatch({ selection: { anchor: point ? editor.posAtCoords(point, false) : editor.state.doc.length } });
-    for (const { key, altKey, ctrlKey, metaKey, shiftKey } of keys) {
-      const command = (ctrlKey || metaKey) && !altKey;
-      if (key === "Enter" && (shiftKey || command)) this.run(cell);
-      else if (command) editor.dispatch({ selection: { anchor: 0, head: editor.state.doc.length } });
-      else editor.dispatch(editor.state.replaceSelection(key === "Enter" ? "\n" : key));
-    }
+    const { editor } = cell, end = editor.state.doc.length;
+    const anchor = point ? editor.posAtCoords(point, false) : end;
+    editor.dispatch({ selection: field.all ? { anchor: 0, head: end } : { anchor } });
+    if (field.value) editor.dispatch(editor.state.replaceSelection(field.value));
+    if (stays) editor.focus();
+    if (field.readOnly) this.run(cell);
   }
 
   // Where a page's questions have variants, it asks once who works here; all pages, and Python, know it then.

@@ -121,8 +121,10 @@
     tools.say(`${what}: ${error.message}.`);
   };
   const open = () => (page ??= script("live.js").then(({ open }) => open({ data, boxes, bar: tools })));
+  const awaited = new Map(); // the cells that somebody writes in before their editors have come
   const ask = async (number) => {
     if (apart) return tools.say(apart);
+    await Promise.all(awaited.values());
     if (number !== undefined && (await isolate(number))) return;
     try {
       const opened = await open();
@@ -140,22 +142,45 @@
     box.querySelector(".cell_input").append(run);
   });
   // Code is written where it stands: the editor comes when somebody goes there, and where answers are asked for, before.
-  // Python waits for the first run.
-  // What is typed until then goes into the cell that was asked for last.
-  let awaited;
-  const hold = (event) => {
-    const command = (event.ctrlKey || event.metaKey) && !event.altKey;
-    if (event.key[1] ? event.key !== "Enter" : command && event.key !== "a") return;
-    awaited.keys.push(event);
-    event.preventDefault();
+  // Python waits for the first run. Until the editor is there, a field of the page takes what is typed, pasted, dictated or composed by an input method.
+  const makeField = (number) => {
+    const code = boxes[number].querySelector(".cell_input > div");
+    const ariaLabel = `Code of cell ${number + 1}`;
+    const field = make("textarea", { className: "live-field", rows: 1, spellcheck: false, autocapitalize: "off", placeholder: " ", ariaLabel });
+    field.addEventListener("compositionstart", () => {
+      field.composed = new Promise((resolve) => field.addEventListener("compositionend", () => setTimeout(resolve), { once: true }));
+    });
+    field.addEventListener("keydown", (event) => {
+      const command = (event.ctrlKey || event.metaKey) && !event.altKey;
+      if (command && event.key === "a") field.all ||= !field.value;
+      if (event.key !== "Enter" || event.isComposing || !(event.shiftKey || command)) return;
+      event.preventDefault();
+      field.readOnly = true; // what is typed after this would run as well
+    });
+    // The editor is asked for again where it could not be fetched.
+    field.onfocus = field.onclick = () => write(number);
+    code.tabIndex = -1; // or Shift+Tab would lead from the field into it again
+    code.after(field);
+    return field;
+  };
+  const bringEditor = async (number, point, field) => {
+    try {
+      const opened = await open();
+      await field.composed;
+      opened.write(opened.cells[number], point, field);
+      field.remove();
+    } catch (error) {
+      page = undefined;
+      field.readOnly = false;
+      await tools.explain(error);
+    }
+    awaited.delete(number);
   };
   const write = (number, point) => {
-    if (apart || awaited?.number === number) return;
-    const { keys } = (awaited = { number, keys: [] });
-    addEventListener("keydown", hold, true);
-    open().then((opened) => opened.write(opened.cells[number], point, keys)).catch(tools.explain).finally(() => {
-      if (awaited?.keys === keys) awaited = removeEventListener("keydown", hold, true);
-    });
+    if (apart) return;
+    const field = boxes[number].querySelector(".live-field") ?? makeField(number);
+    if (!awaited.has(number)) awaited.set(number, bringEditor(number, point, field));
+    field.focus();
   };
   boxes.forEach((box, number) => {
     const code = box.querySelector(".cell_input > div");
@@ -167,6 +192,7 @@
       // Who has selected some of it is about to copy it.
       if (!target.closest("button") && getSelection().isCollapsed) write(number, { x, y });
     });
+    code.addEventListener("dragenter", ({ dataTransfer, x, y }) => dataTransfer.types.includes("text/plain") && write(number, { x, y }));
   });
   const answers = [...boxes.keys()].filter((number) => data.cells[number]?.name);
   if (answers.length && !apart) addEventListener("load", () => setTimeout(() =>
