@@ -307,15 +307,15 @@ def theme_styles(static):
 
 def make_small(static, files, log_level):
     """Minify files in place, in one process, and report messages from ``log_level`` up."""
-    options = [
-        "--minify",
-        f"--log-level={log_level}",
-        "--allow-overwrite",
-        f"--outdir={static}",
-        f"--outbase={static}",
-    ]
     if files:
-        esbuild(*options, *files)
+        esbuild(
+            "--minify",
+            f"--log-level={log_level}",
+            "--allow-overwrite",
+            f"--outdir={static}",
+            f"--outbase={static}",
+            *files,
+        )
 
 
 def number_values(site, rules):
@@ -409,6 +409,10 @@ def bundle_styles(site):
         theme = re.sub(
             r'@charset "[^"]*";|/\*.*?\*/|@font-face\{[^}]*\}', "", theme, flags=re.DOTALL
         )
+        # The theme counts columns in pixels. Whoever reads with larger letters has room for fewer.
+        theme = re.sub(
+            r"(?<=-width:) ?([\d.]+)px(?=\))", lambda width: f"{float(width[1]) / 16}em", theme
+        )
         own = [static / "book.css", WEBSITE / "live" / "js" / "page.css"]
         scripts = [path for name in PAGE_SCRIPTS if (path := static / name).exists()]
         others = [*own, *scripts, *static.glob("moving/*"), *(WEBSITE / "live" / "js").glob("*.js")]
@@ -450,6 +454,7 @@ def join_scripts(site):
             "The theme's script no longer finds the scrolling boxes with the code "
             "that page.py replaces"
         )
+    text = text.replace("(min-width: 992px)", "(min-width: 62em)")
     # The theme lays out the page at once. In a task of its own it does not hold up a reader who
     # touches the page meanwhile.
     theme.write_text(f"setTimeout(() => {{\n{text}\n}})", "utf8")
