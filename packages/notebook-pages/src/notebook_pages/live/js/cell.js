@@ -60,6 +60,12 @@ export class Cell {
             { key: "Shift-Enter", run }, { key: "Mod-Enter", run }, { key: "Escape", run: leave },
           ])),
           keymap.of([...defaultKeymap, ...historyKeymap, indentWithTab]),
+          // Whoever comes with Tab goes on with Tab; it indents as soon as another key, or the pointer, is used here.
+          EditorView.domEventHandlers({
+            focus: (event, editor) => editor.setTabFocusMode(true),
+            keydown: ({ key }, editor) => { if (!/Tab|Shift/.test(key)) editor.setTabFocusMode(false); },
+            pointerup: (event, editor) => editor.setTabFocusMode(false),
+          }),
           EditorView.contentAttributes.of({
             "aria-label": `Code of ${this.name}`, "aria-describedby": "live-keys", spellcheck: "false", tabindex: "0",
           }),

@@ -49,6 +49,7 @@ class Page {
     editor.dispatch({ selection: field.all ? { anchor: 0, head: end } : { anchor } });
     if (field.value) editor.dispatch(editor.state.replaceSelection(field.value));
     if (stays) editor.focus();
+    if (point) editor.setTabFocusMode(false);
     if (field.readOnly) this.run(cell);
   }
 
