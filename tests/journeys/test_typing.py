@@ -153,7 +153,7 @@ def test_a_cell_is_edited_as_any_editor_is(page, site):
     for key in ["Shift+Tab", "Shift+Tab", "Tab"]:
         page.keyboard.press(key)
     expect(page.locator("button.to-original:focus")).to_be_visible()
-    assert content.inner_text() == "    a/b"
+    assert page.locator(".edited .cm-content").inner_text() == "    a/b"
     page.keyboard.press("Tab")
     expect(page.locator(".cm-editor.cm-focused")).to_have_count(0)
 

@@ -448,13 +448,15 @@ def join_scripts(site):
     if not (static / PAGE_SCRIPTS[0]).exists():
         return
     theme = static / PAGE_SCRIPTS[-1]
-    text, count = MEASURES.subn(".forEach(watchWidth)", theme.read_text("utf8"))
+    text, count = MEASURES.subn(
+        ".forEach(watchWidth)",
+        theme.read_text("utf8").replace("(min-width: 992px)", "(min-width: 62em)"),
+    )
     if count != 1:
         raise RuntimeError(
             "The theme's script no longer finds the scrolling boxes with the code "
             "that page.py replaces"
         )
-    text = text.replace("(min-width: 992px)", "(min-width: 62em)")
     # The theme lays out the page at once. In a task of its own it does not hold up a reader who
     # touches the page meanwhile.
     theme.write_text(f"setTimeout(() => {{\n{text}\n}})", "utf8")

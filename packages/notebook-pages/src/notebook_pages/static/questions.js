@@ -16,6 +16,10 @@
     const inputs = [...list.children].map((item) => {
       const input = make("input", { type: "radio", name: box.id, value: item.dataset.name });
       const words = make("span", {}, ...item.firstElementChild.childNodes);
+      // Browsers leave formulas out of the names of controls.
+      const spoken = words.cloneNode(true);
+      spoken.querySelectorAll(".katex > i:last-child").forEach((drawing) => drawing.remove());
+      input.setAttribute("aria-label", `${item.dataset.name}: ${spoken.textContent.trim()}`);
       item.setAttribute("role", "presentation");
       item.replaceChildren(make("label", {}, input, make("b", { textContent: item.dataset.name }), words));
       return input;
