@@ -104,7 +104,7 @@ ARGUMENTS = {
         ],
     ),
     "review": (
-        "decide answers on a page that only this machine can open",
+        "mark answers on a page that only this machine can open",
         [
             OUT,
             GRADER,
