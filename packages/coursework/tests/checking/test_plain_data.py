@@ -105,8 +105,7 @@ WRITTEN = [
     (type("L" * 70, (sm.Function,), {})(x), f"{'L' * 60}({X})"),
     # What is an atom and has parts is no number: the second coordinate is not 1, nor a[1] a.
     (sm.IndexedBase(x)[1], f"Indexed(IndexedBase({X}), {ONE})"),
-    (sm.MatMul(sm.Integer(2), sm.Integer(2), sm.Identity(1)),
-     f"1x1: Mul(Mul({TWO}, {TWO}), {ONE})"),
+    (sm.MatMul(sm.Integer(2), sm.Integer(2), sm.Identity(1)), "1x1: integer(4)"),
     (sm.Symbol("x", real=True), X),
     (f(t), "symbol(f)"),
     (f(t).diff(t), "symbol(f')"),
@@ -142,7 +141,7 @@ WRITTEN = [
     (sm.zeros(2, 0), "2x0: "),
     (sm.zeros(0, 2), "0x2: "),
     (mpmath.matrix([[1, 2]]), "1x2: float(1.0) float(2.0)"),
-    (sm.MatMul(sm.Integer(2), sm.Identity(1)), "1x1: Mul(integer(2), integer(1))"),
+    (sm.MatMul(sm.Integer(2), sm.Identity(1)), "1x1: integer(2)"),
     ((3, units.newton), listed("integer(3)", ["text", "m^1 kg^1 s^-2"])),
     ([x, units.mole / units.second], listed(X, ["text", "s^-1 mol^1"])),
     (5 * units.kilo * units.gram, listed("integer(5)", ["text", "kg^1"])),
@@ -279,10 +278,6 @@ def test_products_and_inverses_of_matrices_are_those_of_sympy(size):
             for a, b in zip(computed, right.flat())
         )
     assert entries(sm.MatPow(square, 1))[0] == entries(square)[0]
-    assert any(node[0] == "Pow" for node in entries(sm.Inverse(square))[1])
-    # Up to 12 factors are left to be multiplied with numbers in place of the symbols.
-    assert any(node[0] == "Mul" for node in entries(sm.MatPow(square, 12))[1])
-    assert not any(node[0] == "Mul" for node in entries(sm.MatPow(square, 13))[1])
 
 
 # ---- borders -----------------------------------------------------------------------------------

@@ -25,6 +25,7 @@ import functools
 import io
 import math
 import numbers
+import operator
 import re
 import sys
 import unicodedata
@@ -444,11 +445,7 @@ class _Writer:
         return len(self.nodes) - 1
 
     def matrix(self, answer: sympy.matrices.MatrixExpr | sympy.MatrixBase) -> Entries:
-        """Return the rows, columns and entries of a matrix expression, with products evaluated.
-
-        SymPy's own inverse of a product of three rotations takes half a minute; written as
-        cofactors over a determinant it is a few more nodes.
-        """
+        """Return the rows, columns and entries of a matrix expression, with products evaluated."""
         if not all(sympy.sympify(size).is_Integer for size in answer.shape):
             raise NotPlain("The matrix has no definite size.")
         rows, columns = map(int, answer.shape)
@@ -456,117 +453,7 @@ class _Writer:
             raise NotPlain(
                 f"The matrix is {rows} × {columns}, but no question asks for one that large."
             )
-        if isinstance(answer, sympy.MatrixBase):
-            return rows, columns, [self.expression(entry) for entry in answer.flat()]
-        if isinstance(answer, sympy.MatMul):
-            factors = [
-                self.matrix(part) if part.is_Matrix else (0, 0, [self.expression(part)])
-                for part in answer.args
-            ]
-            return functools.reduce(self._product, factors)
-        if isinstance(answer, sympy.MatAdd):
-            terms = [self.matrix(part)[2] for part in answer.args]
-            return rows, columns, [self.node("Add", *entries) for entries in zip(*terms)]
-        if isinstance(answer, sympy.Transpose):
-            return self._transposed(self.matrix(answer.arg))
-        if isinstance(answer, sympy.matrices.expressions.matpow.MatPow) and answer.exp.is_Integer:
-            power = int(answer.exp)
-            if 0 < abs(power) <= 12:
-                base = self.matrix(answer.base)
-                base = self._inverse(base) if power < 0 else base
-                return functools.reduce(self._product, [base] * abs(power))
-        try:
-            with limited_work():
-                explicit = answer.doit().as_explicit()
-        except TooMuchWork:
-            raise NotPlain(
-                "The matrix takes too long to compute. Call `.doit()` on it first."
-            ) from None
-        return rows, columns, [self.expression(entry) for entry in explicit.flat()]
-
-    def _product(self, first: Entries, second: Entries) -> Entries:
-        (rows, inner, left), (_, columns, right) = first, second
-        if not rows or not columns:  # one of the two is a number
-            (_, _, (factor,)), (rows, columns, entries) = (
-                (first, second) if not rows else (second, first)
-            )
-            return rows, columns, [self.node("Mul", factor, entry) for entry in entries]
-        entries = [
-            self.node(
-                "Add",
-                *(
-                    self.node("Mul", left[i * inner + k], right[k * columns + j])
-                    for k in range(inner)
-                ),
-            )
-            for i in range(rows)
-            for j in range(columns)
-        ]
-        return rows, columns, entries
-
-    def _transposed(self, matrix: Entries) -> Entries:
-        rows, columns, entries = matrix
-        return (
-            columns,
-            rows,
-            [entries[i * columns + j] for j in range(columns) for i in range(rows)],
-        )
-
-    def _inverse(self, matrix: Entries) -> Entries:
-        size, _, entries = matrix
-        if size > 4:
-            raise NotPlain(
-                "We do not compute the inverse of a matrix of this size. Call `.doit()` on it "
-                "first."
-            )
-        minus = self.node("integer", "-1")
-        numbers_left = tuple(range(size))
-        cofactors = {
-            (i, j): self._minor(
-                entries,
-                size,
-                numbers_left[:i] + numbers_left[i + 1 :],
-                numbers_left[:j] + numbers_left[j + 1 :],
-                minus,
-            )
-            for i in range(size)
-            for j in range(size)
-        }
-        cofactors = {
-            (i, j): self.node("Mul", minus, minor) if (i + j) % 2 else minor
-            for (i, j), minor in cofactors.items()
-        }
-        terms = [self.node("Mul", entries[j], cofactors[0, j]) for j in range(size)]
-        reciprocal = self.node("Pow", self.node("Add", *terms), minus)
-        return (
-            size,
-            size,
-            [
-                self.node("Mul", reciprocal, cofactors[j, i])
-                for i in range(size)
-                for j in range(size)
-            ],
-        )
-
-    def _minor(
-        self,
-        entries: list[int],
-        size: int,
-        rows: tuple[int, ...],
-        columns: tuple[int, ...],
-        minus: int,
-    ) -> int:
-        """Return the determinant of some rows and columns."""
-        if not rows:
-            return self.node("integer", "1")
-        terms = []
-        for place, column in enumerate(columns):
-            rest = self._minor(
-                entries, size, rows[1:], columns[:place] + columns[place + 1 :], minus
-            )
-            factors = [entries[rows[0] * size + column], rest] + [minus] * (place % 2)
-            terms.append(self.node("Mul", *factors))
-        return self.node("Add", *terms)
+        return rows, columns, [self.expression(entry) for entry in _explicit(answer).flat()]
 
     def number(self, number: mpmath.mpf | sympy.Number | complex) -> int:
         of_mpmath = _module(type(number)).startswith("mpmath")
@@ -668,6 +555,36 @@ class _Writer:
         if not children:
             return self.node("constant", type(part).__name__)
         return self.node(type(part).__name__[:60], *(self.written[child] for child in children))
+
+
+def _explicit(matrix: sympy.matrices.MatrixExpr | sympy.MatrixBase) -> sympy.MatrixBase:
+    """Evaluate the products, sums and powers of a matrix expression."""
+    if isinstance(matrix, sympy.MatrixBase):
+        return matrix
+    if isinstance(matrix, (sympy.MatMul, sympy.MatAdd)):
+        parts = [_explicit(part) if part.is_Matrix else part for part in matrix.args]
+        return functools.reduce(operator.mul if matrix.is_MatMul else operator.add, parts)
+    if isinstance(matrix, sympy.Transpose):
+        return _explicit(matrix.arg).T
+    if isinstance(matrix, sympy.matrices.expressions.matpow.MatPow) and (
+        matrix.exp.is_Integer and 0 < abs(matrix.exp) <= 12
+    ):
+        base, power = _explicit(matrix.base), int(matrix.exp)
+        if base.rows > 4 and power < 0:
+            raise NotPlain(
+                "We do not compute the inverse of a matrix of this size. Call `.doit()` on it "
+                "first."
+            )
+        # SymPy's own inverse of a product of three rotations takes half a minute.
+        base = base.adjugate() / base.det() if power < 0 else base
+        return functools.reduce(operator.mul, [base] * abs(power))
+    try:
+        with limited_work():
+            return matrix.doit().as_explicit()
+    except TooMuchWork:
+        raise NotPlain(
+            "The matrix takes too long to compute. Call `.doit()` on it first."
+        ) from None
 
 
 # Expressions that SymPy may have deferred and that ``.doit()`` evaluates.
