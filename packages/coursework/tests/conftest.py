@@ -2,6 +2,7 @@
 students' code imports, and a browser where they are run by themselves.
 """
 
+import contextlib
 import os
 import sys
 from pathlib import Path
@@ -22,35 +23,55 @@ def pytest_configure(config):
 
 
 @pytest.fixture(scope="session")
-def warm_parent():
-    """The sandbox that those of all tests are copied from; made when the first is wanted."""
-    kept = []
-    yield kept
-    for sandbox in kept:
-        sandbox.close()
+def lent_sandboxes(tmp_path_factory):
+    """Two sandboxes for all tests, each with the file that says whether it is in use."""
+    if not sys.platform.startswith("linux"):
+        yield []
+        return
+    from coursework.grading.execution.sandbox import Sandbox
+
+    places = [tmp_path_factory.mktemp("lent") / "in-use" for _ in range(2)]
+    with contextlib.ExitStack() as stack:
+        yield [(stack.enter_context(Sandbox()), place) for place in places]
 
 
 @pytest.fixture(scope="module")
-def libraries_are_loaded_once(warm_parent):
-    """Whoever grades a class loads SymPy for it, which takes a second; here one
-    process has, for those of all tests.
+def libraries_are_loaded_once(lent_sandboxes):
+    """Whoever grades a class loads SymPy for it, which takes seconds; here two processes have, for
+    all tests. One that dies, or whose user does, is not lent again.
 
     Not for tests of the sandbox itself, or of how it is started.
     """
-    if not sys.platform.startswith("linux"):
+    if not lent_sandboxes:
         yield
         return
-    from coursework.grading.execution import sandbox
+    from coursework.grading.execution import isolation, sandbox
 
-    class Copied(sandbox.Sandbox):
-        def __init__(self, limits=None, *, like=None, **options):
-            if not any(options.values()):
-                if not warm_parent:
-                    warm_parent.append(by_itself())
-                like = warm_parent[0]
-            super().__init__(limits, like=like, **options)
+    class Lent(sandbox.Sandbox):
+        place = None
 
-    by_itself = sandbox.Sandbox
+        def __init__(self, limits=None, **options):
+            for lent, place in lent_sandboxes:
+                if any(options.values()) or isolation.lacking(lent.report):
+                    break
+                # Processes that grade side by side take one each.
+                with contextlib.suppress(FileExistsError):
+                    place.touch(exist_ok=False)
+                    self.__dict__.update(vars(lent), limits=limits or sandbox.Limits(), place=place)
+                    return
+            super().__init__(limits, **options)
+
+        def __exit__(self, kind, *error):
+            if self.place and kind is None:
+                self.place.unlink()
+            else:
+                super().__exit__(kind, *error)
+
+        def close(self):
+            if self.place:  # it is another process that ends it
+                self.place = self.control = self.process = self.errors = self.base = None
+            super().close()
+
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(sandbox, "Sandbox", Copied)
+        patched.setattr(sandbox, "Sandbox", Lent)
         yield

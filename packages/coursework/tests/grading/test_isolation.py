@@ -8,12 +8,10 @@ import errno
 import json
 import os
 import shutil
-import signal
 import struct
 import subprocess
 import sys
 
-import psutil
 import pytest
 
 from coursework.grading.execution import isolation, scratch, system_calls
@@ -81,40 +79,6 @@ def test_a_process_that_cannot_be_confined_runs_nothing():
         sandbox.limits = Limits(open_files=-5)
         with pytest.raises(WeakIsolation, match="could not isolate"):
             sandbox.run(HONEST)
-
-
-@pytest.mark.skipif(
-    os.geteuid() != 0, reason="an ordinary user's warm parents are started one by one"
-)
-def test_copies_of_a_warm_parent_are_as_much_apart_as_those_that_are_started():
-    cell = {
-        "source": "import os\nmine = [os.getuid(), os.getpid()]\nopen('kept', 'x').close()",
-        "execution_count": None,
-    }
-    job = {"id": "one", "cells": [cell], "questions": {"mine": {"variable": "mine"}}, "seed": 0}
-
-    def who(sandbox):
-        result = sandbox.run(job)
-        assert result["finished"] and result["isolation"] == alone.isolation_in_force().as_json()
-        return result["answers"]["mine"]["plain"]["nodes"]
-
-    with (
-        Sandbox() as alone,
-        Sandbox() as first,
-        Sandbox(like=first) as one,
-        Sandbox(like=first) as other,
-    ):
-        assert one.process is None and one.warm_parent != other.warm_parent  # they are copies
-        assert one.report == other.report == first.report and not one.report["not stopped"]
-        # Each is a user of its own.
-        assert len({str(who(sandbox)) for sandbox in (alone, one, other)}) == 3
-        os.kill(one.warm_parent, signal.SIGKILL)
-        before = one.warm_parent
-        # Another copy took its place.
-        assert who(one) and one.process is None and one.warm_parent != before
-        first.close()
-        assert who(other) and other.process is not None  # without the first, one of its own
-    assert not any(psutil.pid_exists(sandbox) for sandbox in (before,))
 
 
 def test_a_crash_is_handled_by_nobody():

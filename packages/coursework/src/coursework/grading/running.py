@@ -142,14 +142,12 @@ def here(jobs: Jobs, finish: Finish, running: Running) -> Iterator[Finished]:
     """Run and judge on this machine: each process has a sandbox, and does
     one student's work after another.
     """
-    from .execution.sandbox import Sandbox, WeakIsolation, WorkerDied, copies_are_apart, given_up
-
-    first, weak = None, running.allow_weak_isolation
+    from .execution.sandbox import Sandbox, WeakIsolation, WorkerDied, given_up
 
     def prepare(stack: contextlib.ExitStack) -> Callable[[int], Finished]:
         jobs.store.in_copy_of_process()
         sandbox = stack.enter_context(
-            Sandbox(running.limits, allow_weak_isolation=weak, like=first)
+            Sandbox(running.limits, allow_weak_isolation=running.allow_weak_isolation)
         )
 
         def run_one(job: Job) -> Result:
@@ -162,16 +160,13 @@ def here(jobs: Jobs, finish: Finish, running: Running) -> Iterator[Finished]:
         return lambda order: finish(order, [run_one(job) for job in jobs.of(order)])
 
     number = len(jobs.work)
-    with contextlib.ExitStack() as stack:
-        if number and copies_are_apart():
-            first = stack.enter_context(Sandbox(running.limits, allow_weak_isolation=weak))
-        yield from side_by_side(
-            range(number),
-            min(running.workers, number),
-            prepare,
-            (WeakIsolation, WorkerDied, intake.Unfit),
-            lambda order: finish(order, jobs.given_up(order, MARKING_ENDED)),
-        )
+    yield from side_by_side(
+        range(number),
+        min(running.workers, number),
+        prepare,
+        (WeakIsolation, WorkerDied, intake.Unfit),
+        lambda order: finish(order, jobs.given_up(order, MARKING_ENDED)),
+    )
 
 
 def on_cluster(jobs: Jobs, finish: Finish, running: Running) -> Iterator[Finished]:

@@ -110,7 +110,6 @@ Report = TypedDict(
         "layers": dict[str, Layer],
         "not stopped": list[str],
         "landlock version": int,
-        "scratch in memory": bool,
     },
 )
 
@@ -183,7 +182,7 @@ def readable_paths() -> list[str]:
 
 # ---- namespaces
 
-CLONE_NEWNS, CLONE_NEWUSER, CLONE_NEWPID = 0x00020000, 0x10000000, 0x20000000
+CLONE_NEWNS, CLONE_NEWUSER = 0x00020000, 0x10000000
 MS_NOSUID, MS_NODEV, MS_REC, MS_PRIVATE = 2, 4, 16384, 1 << 18
 OUTSIDER = 65534
 SCRATCH = "/scratch"
@@ -226,13 +225,6 @@ def bubblewrap_command(bubblewrap: str, readable: Iterable[str]) -> list[str]:
         command += ["--dev-bind", device, device]
     command += ["--tmpfs", SCRATCH, "--symlink", SCRATCH, "/dev/shm"]
     return [*command, "--remount-ro", "/", "--chdir", "/", "--"]
-
-
-def unshare_processes() -> None:
-    """Have the process that is forked next be the first of a namespace in
-    which only those below it are seen.
-    """
-    _call("unshare", _library.unshare(CLONE_NEWPID))
 
 
 def mount_own_scratch(folder: str, size: int, user: int) -> None:

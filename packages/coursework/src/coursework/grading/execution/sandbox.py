@@ -31,7 +31,6 @@ import select
 import shutil
 import signal
 import socket
-import struct
 import subprocess
 import sys
 import tempfile
@@ -56,7 +55,6 @@ OUTSIDE = "outside"  # the folder of the file that the isolation is tried on
 PAUSE = 0.005
 DEEPEST_STEPS = 10
 MOST_UNKNOWN = 20  # names of questions that do not exist, kept of one notebook
-SIZE_OF_CREDENTIALS = struct.calcsize("3i")
 NOT_RUN = Cell("not run")
 ATTEMPTS_OF_A_JOB = 3  # how often a job is tried when its worker dies under it
 
@@ -140,8 +138,6 @@ class Sandbox:
     without : collection of str
         Layers to leave out, of :data:`coursework.grading.execution.isolation.LAYERS`; then the
         isolation is weak.
-    like : Sandbox, optional
-        One that runs no notebooks: this one gets a copy of its warm parent, if that can be copied.
 
     Raises
     ------
@@ -155,7 +151,6 @@ class Sandbox:
         *,
         allow_weak_isolation: bool = False,
         without: Collection[str] = (),
-        like: Sandbox | None = None,
     ) -> None:
         unknown = set(without) - set(LAYERS)
         if unknown:
@@ -169,9 +164,7 @@ class Sandbox:
         self.limits = limits or Limits()
         self.allow_weak_isolation = allow_weak_isolation
         self.without = frozenset(without)
-        self.like = like
         self.process: subprocess.Popen[bytes] | None = None
-        self.warm_parent: int | None = None  # its number
         self.control: socket.socket | None = None
         self.errors: IO[bytes] | None = None
         self.base: str | None = None
@@ -190,16 +183,11 @@ class Sandbox:
         """Start the warm parent and try its isolation."""
         try:
             with contextlib.ExitStack() as stack:
-                target = self.target(stack)
-                if not self.copied(target):
-                    self.report = self.launched(target)
+                self.report = self.launched(self.target(stack))
         except BaseException:
             self.close()
             raise
-        if self.process is None or self.base is None:
-            self.remove_base()  # a copy is tried there and works in memory
-        else:
-            scratch.remove_folder(os.path.join(self.base, OUTSIDE))
+        scratch.remove_folder(os.path.join(str(self.base), OUTSIDE))
         lacking = isolation.lacking(self.report)
         if lacking and not self.allow_weak_isolation:
             self.close()
@@ -209,42 +197,6 @@ class Sandbox:
                 + "\nTo run it anyway, on a machine that you can afford to lose, add "
                 "--allow-weak-isolation. Every result will record this."
             )
-
-    def copied(self, target: Target) -> bool:
-        """Have the warm parent of another sandbox copied, and the copy tried; whether it serves."""
-        if (
-            self.like is None
-            or self.like.control is None
-            or not self.like.report["scratch in memory"]
-        ):
-            return False
-        control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
-        # Within the folder of the other: should this process be killed, it goes with that.
-        self.control, self.base = control, tempfile.mkdtemp(dir=self.like.base)
-        os.chmod(self.base, 0o755)
-        about = {"user": new_user(), "target": target | {"files": [file_outside(self.base)]}}
-        try:
-            with other:
-                socket.send_fds(
-                    self.like.control, [json.dumps({"copy": about}).encode()], [other.fileno()]
-                )
-            waiting = select.poll()
-            waiting.register(control, select.POLLIN)
-            if not waiting.poll(WAIT_FOR_START * 1000):
-                raise WorkerDied("a copy of the sandbox's parent process did not start in time")
-            data, ancillary, _, _ = control.recvmsg(1 << 20, socket.CMSG_SPACE(SIZE_OF_CREDENTIALS))
-            self.report = json.loads(data)["ready"]
-            # The kernel says who speaks, by the number that the process has here.
-            (credentials,) = (
-                value for _, kind, value in ancillary if kind == socket.SCM_CREDENTIALS
-            )
-            self.warm_parent = struct.unpack("3i", credentials)[0]
-        except (OSError, ValueError, WorkerDied):
-            self.close()
-            return False
-        control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 0)
-        return True
 
     def target(self, stack: contextlib.ExitStack) -> Target:
         """What the isolation is tried on: two ports and a local
@@ -348,12 +300,11 @@ class Sandbox:
         except WorkerDied:
             self.process.wait(WAIT_FOR_END)
             raise WorkerDied(self.last_error()) from None
-        self.warm_parent = self.process.pid
         return message["ready"]
 
     def last_error(self) -> str:
         """The last line that the warm parent, never a student, wrote on its error stream."""
-        if errors := self.errors or (self.like and self.like.errors):
+        if errors := self.errors:
             errors.seek(0)
             if lines := errors.read().decode(errors="replace").strip().splitlines():
                 return lines[-1][:500]
@@ -398,11 +349,9 @@ class Sandbox:
             except subprocess.TimeoutExpired:
                 self.process.kill()
                 self.process.wait()
-        elif self.warm_parent is not None:
-            end_copy(self.warm_parent)
         if self.errors is not None:
             self.errors.close()
-        self.control = self.process = self.warm_parent = self.errors = None
+        self.control = self.process = self.errors = None
         self.remove_base()
 
     def remove_base(self) -> None:
@@ -682,7 +631,8 @@ class _Once:
         with others; whether there was any.
         """
         if self.process is None:
-            self.process = running_below(self.sandbox.warm_parent)
+            warm_parent = self.sandbox.process
+            self.process = running_below(warm_parent.pid if warm_parent else None)
         waited = kept_waiting(self.process) - self.kept_waiting
         if waited < 0.01:
             return False
@@ -816,32 +766,11 @@ def given_up(job: Job, why: str) -> Result:
     }
 
 
-def copies_are_apart() -> bool:
-    """Whether copies of a warm parent are as much apart as warm
-    parents that are started one by one.
-
-    They share its user namespace. There the threads of an ordinary user are counted together, and
-    one notebook could take another's; root gives each copy a user of its own.
-    """
-    return os.geteuid() == 0
-
-
 def new_user() -> int:
     """A user that nobody else is: root gives the code to it, and its
     limit of threads counts only these.
     """
     return 1_900_000_000 + random.SystemRandom().randrange(10**8)
-
-
-def end_copy(process: int) -> None:
-    """Wait until the copy of a warm parent has ended, of which the
-    other end of its control is closed.
-    """
-    with contextlib.suppress(OSError):  # it has ended
-        handle = os.pidfd_open(process)
-        with open(handle, "rb"):
-            if not select.select([handle], [], [], 5)[0]:
-                signal.pidfd_send_signal(handle, signal.SIGKILL)
 
 
 def running_below(process: int | None) -> int | None:
@@ -915,15 +844,8 @@ def run_notebooks(
         Before any student code is run.
     """
 
-    def sandbox(like: Sandbox | None = None) -> Sandbox:
-        return Sandbox(
-            limits, allow_weak_isolation=allow_weak_isolation, without=without, like=like
-        )
+    def prepare(stack: contextlib.ExitStack) -> Callable[[Job], Result]:
+        sandbox = Sandbox(limits, allow_weak_isolation=allow_weak_isolation, without=without)
+        return stack.enter_context(sandbox).run
 
-    with contextlib.ExitStack() as outer:
-        first = outer.enter_context(sandbox()) if copies_are_apart() else None
-
-        def prepare(stack: contextlib.ExitStack) -> Callable[[Job], Result]:
-            return stack.enter_context(sandbox(first)).run
-
-        yield from side_by_side(jobs, workers, prepare, (WeakIsolation, WorkerDied))
+    yield from side_by_side(jobs, workers, prepare, (WeakIsolation, WorkerDied))

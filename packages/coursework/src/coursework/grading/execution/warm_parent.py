@@ -12,11 +12,6 @@ It speaks with the process that started it in JSON, one message each:
                                                and the secret calls
     out  {"ended": {"signal": n} or {"code": n}, "scratch full": bool}
     in   {"kill": true}                        while a notebook runs
-    in   {"copy": {...}}                       with one handle: a copy of this process says "ready"
-                                               there, and serves
-
-The libraries take most of a second to load, so where several notebooks run at a time one warm
-parent loads them and is copied. One that is copied runs no notebook itself.
 """
 
 import contextlib
@@ -76,13 +71,6 @@ class Run(TypedDict):
     limits: LimitsOfChild
 
 
-class Copy(TypedDict):
-    """What is particular to a copy of this process."""
-
-    user: int
-    target: Target
-
-
 class Tried(TypedDict, total=False):
     """What came of trying the layers: one of these."""
 
@@ -95,7 +83,6 @@ class Message(TypedDict, total=False):
 
     start: Start
     run: Run
-    copy: Copy
     kill: bool
 
 
@@ -313,13 +300,11 @@ class WarmParent:
                 if why_not is None:
                     self.layers.append(layer)
             not_stopped = self.not_stopped(everywhere)
-        self.said: Report = {
+        return {
             "layers": layers,
             "not stopped": not_stopped,
             "landlock version": isolation.landlock_version(),
-            "scratch in memory": self.own_scratch,
         }
-        return self.said
 
     @contextlib.contextmanager
     def file_within(self) -> Iterator[str]:
@@ -370,46 +355,9 @@ class WarmParent:
             message, handles = receive(self.control)
             if message is None:
                 return
-            if "copy" in message:
-                self.copy(message["copy"], *handles)
-                continue
             if "run" not in message:
                 continue  # a late "kill": what it was meant for has ended
             send(self.control, self.run(message["run"], handles))
-
-    def copy(self, about: Copy, handle: int) -> None:
-        """Have a copy of this process serve at another handle, as the first
-        process of a namespace of its own.
-        """
-        with contextlib.suppress(ChildProcessError):
-            while os.waitpid(-1, os.WNOHANG)[0]:  # copies that have ended
-                pass
-        if os.fork() == 0:
-            with contextlib.suppress(Exception):
-                self.be_copy(about, handle)
-            os._exit(0)
-        os.close(handle)
-
-    def be_copy(self, about: Copy, handle: int) -> None:
-        isolation.die_with_parent()
-        self.control.close()
-        self.control = socket.socket(fileno=handle)
-        isolation.unshare_processes()
-        inner = os.fork()
-        if inner:
-            self.control.close()
-            os.waitpid(inner, 0)
-            return
-        isolation.die_with_parent()
-        self.user, self.target = about["user"], about["target"]
-        self.target["threads in use"] = self.threads_in_use
-        with self.file_within() as own:
-            not_stopped = self.not_stopped(self.target_with(own))
-        gc.collect()
-        gc.freeze()
-        with contextlib.suppress(ConnectionError):
-            send(self.control, {"ready": {**self.said, "not stopped": not_stopped}})
-            self.serve()
 
     def run(self, run: Run, handles: Sequence[int]) -> dict[str, object]:
         folder = self.new_scratch(self.layers)
