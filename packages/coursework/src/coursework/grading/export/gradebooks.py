@@ -27,7 +27,7 @@ from ..record import Identity, Record
 from ..store import Store, file_name, write
 from ..submissions.intake import refused_of
 from ..submissions.languages import LANGUAGES, in_english
-from ..submissions.roster import local_parts, turned
+from ..submissions.roster import encoding_of, local_parts, turned
 from ..tables import in_a_line, number, number_of, table
 
 NBGRADER = (
@@ -212,7 +212,7 @@ class Gradebook:
     """A table of a learning management system, of which cells can be changed one at a time."""
 
     def __init__(self, data: bytes, names: Mapping[str, str] | None = None) -> None:
-        self.encoding, self.mark = _encoding(data)
+        self.encoding, self.mark = encoding_of(data)
         text = data[len(self.mark) :].decode(self.encoding)
         self.delimiter = max(",;\t", key=text.split("\n", 1)[0].count)
         self.lines = _split(text, self.delimiter)
@@ -251,21 +251,6 @@ class Gradebook:
             for fields, end in self.lines
         )
         return self.mark + text.encode(self.encoding)
-
-
-def _encoding(data: bytes) -> tuple[str, bytes]:
-    for mark, encoding in (
-        (b"\xef\xbb\xbf", "utf-8"),
-        (b"\xff\xfe", "utf-16-le"),
-        (b"\xfe\xff", "utf-16-be"),
-    ):
-        if data.startswith(mark):
-            return encoding, mark
-    try:
-        data.decode("utf-8")
-        return "utf-8", b""
-    except UnicodeDecodeError:
-        return "latin-1", b""  # gives every byte back as it was
 
 
 def _split(text: str, delimiter: str) -> list[tuple[list[Field], str]]:

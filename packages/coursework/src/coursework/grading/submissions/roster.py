@@ -208,7 +208,9 @@ class Roster:
 
 def cells_in(path: Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
     """The names of a table's columns, in small letters, and the cells of each line."""
-    text = decoded(path.read_bytes())
+    data = path.read_bytes()
+    encoding, mark = encoding_of(data)
+    text = data[len(mark) :].decode(encoding)
     first = text.split("\n", 1)[0]
     # Not at every sign that ends a line somewhere: students choose their names,
     # and would begin a line of theirs.
@@ -233,19 +235,20 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
         yield number, dict(zip(header, cells))
 
 
-def decoded(data: bytes) -> str:
-    """The text of a table, in whichever encoding a spreadsheet left it."""
+def encoding_of(data: bytes) -> tuple[str, bytes]:
+    """The encoding in which a spreadsheet or a system left a table, and the mark in front of it."""
     for mark, encoding in (
-        (b"\xef\xbb\xbf", "utf-8-sig"),
-        (b"\xff\xfe", "utf-16"),
-        (b"\xfe\xff", "utf-16"),
+        (b"\xef\xbb\xbf", "utf-8"),
+        (b"\xff\xfe", "utf-16-le"),
+        (b"\xfe\xff", "utf-16-be"),
     ):
         if data.startswith(mark):
-            return data.decode(encoding)
+            return encoding, mark
     try:
-        return data.decode("utf-8")
+        data.decode("utf-8")
+        return "utf-8", b""
     except UnicodeDecodeError:
-        return data.decode("latin-1")
+        return "latin-1", b""  # gives every byte back as it was
 
 
 def _called(line: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
