@@ -239,6 +239,12 @@ class Scalar:
 
     item = tolist
 
+    def __repr__(self):
+        return f"np.{self.dtype}({self.tolist()!r})"
+
+    def __str__(self):
+        return repr(self.tolist())
+
     def __array__(self, dtype=None, copy=None):
         return real().asarray(self.tolist(), dtype)
 
@@ -262,12 +268,6 @@ class Scalar:
 class Number(Scalar, float):
     kind = "f"
 
-    def __repr__(self):
-        return f"np.float64({float(self)!r})"
-
-    def __str__(self):
-        return float.__repr__(self)
-
     def __round__(self, digits=None):
         return round(float(self)) if digits is None else around(self, digits)
 
@@ -276,12 +276,6 @@ class Number(Scalar, float):
 
 class Integer(Scalar, int):
     kind = "i"
-
-    def __repr__(self):
-        return f"np.int64({int(self)!r})"
-
-    def __str__(self):
-        return int.__repr__(self)
 
     __hash__ = int.__hash__
 
@@ -300,11 +294,8 @@ class Truth(Scalar):
     def __repr__(self):
         return f"np.{self.value}_"
 
-    def __str__(self):
-        return str(self.value)
-
     def __format__(self, form):
-        return format(str(self), form) if form else str(self)
+        return format(str(self), form)
 
     def __hash__(self):
         return hash(self.value)
