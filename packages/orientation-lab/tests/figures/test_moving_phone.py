@@ -69,10 +69,10 @@ def test_both_makers_are_read_alike(open_figure, maker):
         page, "Direction cosine matrix of the phone with respect to the ground"
     ) == pytest.approx(dcm.ravel().tolist(), abs=6e-4)
     assert numbers(
-        page, "Specific force along the phone, in metres per second squared"
+        page, "Specific force along the axes of the phone, in metres per second squared"
     ) == pytest.approx(force, abs=0.006)
     assert numbers(
-        page, "Angular velocity along the phone, in degrees per second"
+        page, "Angular velocity along the axes of the phone, in degrees per second"
     ) == pytest.approx(RATE, abs=0.06)
     assert "magnetic north" in page.locator(".live .words").inner_text()
     page.get_by_role("button", name="Record").click()
