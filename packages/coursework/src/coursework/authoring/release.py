@@ -483,7 +483,8 @@ def release(
             found = pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted))
             for (path, *_), more in zip(wanted, found, strict=True):
                 answers[path].append(more)
-        for path in paths:
+        # Two variants may have the same answer by chance; all of them may not.
+        for path in paths if variants is None else ():
             _demand_answers(answers[path])
         _demand_later(
             course, {question: later for one in made for question, later in one.after.items()}
