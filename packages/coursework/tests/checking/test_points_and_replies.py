@@ -102,8 +102,9 @@ def shown(**about):
 def test_a_reply_as_text():
     assert repr(shown()) == "Not yet: levers/<one>\nSay so: x_1 < 2.\nAnd on."
     solved = Reply("levers/one", "correct", solution="<p>So.</p>")
-    assert repr(solved) == "\n".join(
-        ["Correct: levers/one", "Open the notebook in Jupyter to see the worked solution."]
+    assert repr(solved) == (
+        "Correct: levers/one\n"
+        "A worked solution comes with this reply, in the notebook or on the page."
     )
     for outcome, (_, word, _) in OUTCOMES.items():
         assert repr(Reply("a/b", outcome)) == f"{word}: a/b"

@@ -117,7 +117,7 @@ class Reply:
         if self.shown:
             lines.append(f"We read: {self.shown.text}")
         if self.solution:
-            lines.append("Open the notebook in Jupyter to see the worked solution.")
+            lines.append("A worked solution comes with this reply, in the notebook or on the page.")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
