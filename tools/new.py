@@ -242,8 +242,8 @@ def new_chapter(name, title, after):
     """Make a chapter and its exercises, and enter both in all lists of the book."""
     if not re.fullmatch(NAME, name) or not title.strip():
         sys.exit(
-            f"Give a chapter a NAME in lower-case letters and hyphens and a TITLE, not {name!r} "
-            f"and {title!r}."
+            "A chapter needs a TITLE, and a NAME made of lower-case letters and hyphens; you gave "
+            f"{name!r} and {title!r}."
         )
     chapter, source = Path("chapters", f"{name}.ipynb"), source_of(name)
     for path in (chapter, source):

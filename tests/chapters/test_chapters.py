@@ -156,7 +156,7 @@ def test_a_new_chapter_has_all_its_parts(book):
     [
         (
             ("chapter", "Chapter of the tests", "Chapter of the tests"),
-            "NAME in lower-case letters and hyphens",
+            "NAME made of lower-case letters and hyphens",
         ),
         (("chapter", "chapter-of-the-tests", ""), "a TITLE"),
         (

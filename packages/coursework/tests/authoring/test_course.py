@@ -112,7 +112,7 @@ def test_one_notebook_is_released_alone(tmp_path):
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("title = 3", "it may only set title"),
+        ("title = 3", "the settings are title"),
         ("titel = 'Statics'", "what is 'titel'"),
         ("title = ", "Invalid value"),
     ],

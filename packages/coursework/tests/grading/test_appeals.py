@@ -245,7 +245,10 @@ def test_a_table_of_appeals_is_taken_in_once(begun, out, capsys):
     for entered in (1, 0):
         main(["merge", str(out.folder), str(path)])
         said = capsys.readouterr()
-        assert f"imported: {entered}." in said.out and "line 3: there is no answer of" in said.out
+        assert (
+            f"imported from {path}: {entered}." in said.out
+            and "line 3: there is no answer of" in said.out
+        )
     assert "1 appeal is open (ben)" in said.err
     (appeals,) = Journal(out.folder).standing().appeals.values()
     assert [(len(one.steps), one.steps[0].words) for one in appeals] == [(1, f"=1+1 {SCRIPT}")]

@@ -52,7 +52,7 @@ def test_results_are_nobody_s_work(course):
     }
     with pytest.raises(NothingToGrade, match="Choose a different folder for the results"):
         graded(course, course / "in", course / "in")
-    with pytest.raises(NothingToGrade, match="contains results of grading"):
+    with pytest.raises(NothingToGrade, match="contains grading results"):
         graded(course, course / "in" / "marks", course / "out")
     with pytest.raises(NothingToGrade, match="contains the notebooks with solutions"):
         graded(course, course / "course", course / "out")

@@ -117,8 +117,8 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     assert "'ben', first-steps: 7 -> 8" in run("grade handed-in --out marks", fails=True)
     run("grade handed-in --out marks --yes")
     (folder / "appeals.csv").write_text("student,question,words\ncem,first-steps/area,Why?\n")
-    assert "imported: 1." in run("merge marks appeals.csv --grader Ann")
-    assert "imported: 0." in run("merge marks appeals.csv --grader Ann")
+    assert "Lines imported from appeals.csv: 1." in run("merge marks appeals.csv --grader Ann")
+    assert "Lines imported from appeals.csv: 0." in run("merge marks appeals.csv --grader Ann")
     run("term marks")
     assert '"ben","100"' in (folder / "marks" / "course" / "course.csv").read_text()
     # The next term: other people, and other numbers.
@@ -176,11 +176,11 @@ def test_a_sitting_of_a_class(run, tmp_path, monkeypatch):
     ticked(
         place / "ticks.csv", area=lambda name: "b" if name < "s-10" else "A", slope=lambda _: "A"
     )
-    assert "imported: 60." in run(merge) and "imported: 0." in run(merge)
+    assert "ticks.csv: 60." in run(merge) and "ticks.csv: 0." in run(merge)
     assert "quiz: 2.5 of 3 points" in run("why s-00 quiz")
     # Printed once more, the table keeps its ticks, and the answers their decisions.
     run(command)
-    assert "imported: 0." in run(merge)
+    assert "ticks.csv: 0." in run(merge)
     (folder / "appeals.csv").write_text("student,question,words\ns-01,first-steps/area,Why?\n")
     run("merge marks appeals.csv")
     page = folder / "marks" / "feedback" / "s-01" / "quiz.html"

@@ -94,7 +94,7 @@ def test_a_table_of_decisions_decides_only_what_it_was_written_for(course):
         line["credit"] = {"ada": "1", "ben": "0"}[line["student"]]
     path = course.write_table("decided.csv", table)
     said = course.run("merge", "marks", path, "--grader", "Ann")
-    assert "imported: 2." in said and course.points() == {"ada": 9, "ben": 8}
+    assert "decided.csv: 2." in said and course.points() == {"ada": 9, "ben": 8}
     course.hands_in("ada", "hw2", why=TOO_SHORT)
     course.grade("--yes")
     assert course.points()["ada"] == 8 and [
@@ -233,7 +233,7 @@ def test_a_record_that_was_deleted_costs_nobody_a_mark(tmp_path):
     book = course.canvas_book("HW 2 (7)")
     (course.marks / "records" / "ada" / "hw2.json").unlink()
     said = course.export(book, fails=True)
-    assert "The record of 'ada', hw2 is missing from" in said and "Grade again first" in said
+    assert "ada's record for hw2 is missing from" in said and "Grade again first" in said
     assert "its record is gone: grade again" in course.run("why", "ada", "hw2", fails=True)
     course.grade()
     course.export(book)

@@ -109,8 +109,8 @@ class Animation:
         for moment, shape in zip(self.moments, shapes):
             if shape != shapes[0]:
                 raise ValueError(
-                    f"the drawing at {moment:.2f} does not consist of the same marks as the one at "
-                    "0; an arrow may point straight at the reader there: choose another view"
+                    f"the drawing at {moment:.2f} has different marks from the one at 0. An "
+                    "arrow may point straight at the reader; choose another view"
                 )
 
     def texts(self):

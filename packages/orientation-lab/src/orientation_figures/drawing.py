@@ -116,8 +116,8 @@ class Drawing(Words):
     def __init__(self, alt, view=IN_SPACE, scale=120):
         if len(alt.strip()) < 40:
             raise ValueError(
-                f"alt has {len(alt.strip())} of the 40 characters that a description needs to "
-                "replace the picture: name the arrows, the angles and what they show"
+                f"alt has only {len(alt.strip())} characters; a description needs at least 40. "
+                "Name the arrows and the angles, and say what they show"
             )
         self.view = np.asarray(view, dtype=float)
         if self.view.shape != (3, 3):

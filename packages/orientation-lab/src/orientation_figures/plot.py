@@ -75,8 +75,8 @@ class Plot:
 
         if len(alt.strip()) < 40:
             raise ValueError(
-                f"alt has {len(alt.strip())} of the 40 characters that a description needs to "
-                "replace the picture: name the axes, the curves and what they show"
+                f"alt has only {len(alt.strip())} characters; a description needs at least 40. "
+                "Name the axes and the curves, and say what they show"
             )
         self.alt, self.colours, self.width = alt.strip(), LIGHT, width
         with matplotlib.rc_context(SETTINGS):

@@ -132,7 +132,10 @@ def _add_recording(commands):
         "'time=1 gyroscope=2-4:rad/s accelerometer=5-7'",
     )
     parser.add_argument(
-        "--html", type=Path, metavar="REPORT", help="write the report with its plots to one page"
+        "--html",
+        type=Path,
+        metavar="REPORT",
+        help="write the report, with plots, as a single HTML page",
     )
     parser.add_argument(
         "--csv",

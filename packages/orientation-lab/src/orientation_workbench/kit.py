@@ -116,8 +116,9 @@ def convention_of(
     found = explain(np.array(asked), result, first_declared=known[0], second_declared=known[1])
     if not found.chains:
         raise ValueError(
-            f"no convention that this kit knows leads from the arguments to the answer: from "
-            f"{np.round(asked[0], 4).tolist()} it made {np.round(result[0], 4).tolist()}"
+            "no convention known to this kit explains the answer: for "
+            f"{np.round(asked[0], 4).tolist()} the function returned "
+            f"{np.round(result[0], 4).tolist()}"
         )
     best = found.chains[0]
     relation = best.relation

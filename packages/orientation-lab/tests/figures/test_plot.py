@@ -24,7 +24,7 @@ def example(alt=ALT, rows=1):
 
 
 def test_a_text_that_stands_for_the_plot_is_demanded():
-    with pytest.raises(ValueError, match="has 5 of the 40 characters"):
+    with pytest.raises(ValueError, match="has only 5 characters"):
         Plot("short")
 
 

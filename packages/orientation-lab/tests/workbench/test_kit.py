@@ -147,7 +147,7 @@ def test_what_is_found_is_said_in_words():
 
 def test_no_convention_is_told():
     fixed = np.eye(3)[[1, 2, 0]]
-    with pytest.raises(ValueError, match="no convention that this kit knows"):
+    with pytest.raises(ValueError, match="no convention known to this kit"):
         convention_of(lambda q: fixed, "quaternion")
     with pytest.raises(ValueError, match="not a rotation"):
         convention_of(lambda q: 2 * np.eye(3), "quaternion")

@@ -121,8 +121,9 @@ def _read(path: Path) -> Course:
     unknown = sorted(set(said) - {*DEFAULTS, "title", *TEXTS})
     if unknown or not all(isinstance(value, str) for value in said.values()):
         raise AuthorError(
-            f"{path}: it may only set title, {', '.join((*TEXTS, *DEFAULTS))}, each to a "
-            "string, and roster" + (f"; what is {unknown[0]!r}?" if unknown else ".")
+            f"{path}: the settings are title, {', '.join((*TEXTS, *DEFAULTS))} (all "
+            "strings) and roster (true or false)"
+            + (f"; what is {unknown[0]!r}?" if unknown else ".")
         )
     places = {name: path.parent / said.get(name, default) for name, default in DEFAULTS.items()}
     others = {name: said.get(name, "") for name in TEXTS}

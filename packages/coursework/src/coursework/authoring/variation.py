@@ -153,7 +153,7 @@ def drawn_in(text: str) -> tuple[str, str] | None:
     ]
     if len(calls) != 1:
         raise AuthorError(
-            "Put exactly one `name = draw(...)` between the marks for variants; here there are "
+            "Put exactly one `name = draw(...)` between the VARIANTS markers; this cell has "
             f"{len(calls)}:\n{region[1]}"
         )
     return calls[0]

@@ -422,7 +422,10 @@ def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes
             _merge_journal(journal, store, path, dry_run)
         else:
             entered, unused = journal.take_in_table(Path(path), store.all(), grader)
-            print(f"From {path}, {'would be ' * dry_run}imported: {entered}.")
+            print(
+                "Dry run: lines to import" if dry_run else "Lines imported",
+                f"from {path}: {entered}.",
+            )
             for line in unused:
                 print(f"  not used: {line}")
     if not dry_run:

@@ -102,7 +102,7 @@ def read(
         )
     if (submissions / "records").is_dir() and (submissions / JOURNAL).is_file():
         raise NothingToGrade(
-            f"{submissions} contains results of grading. Give the folder with the submissions."
+            f"{submissions} contains grading results. Give the folder with the submissions."
         )
     try:
         notebooks, refused = intake.take_in(

@@ -257,7 +257,8 @@ def bring_answers_first(target):
     after, count = start.subn(lambda match: wait + match[0], before)
     if count != 1:
         raise RuntimeError(
-            f"{page} starts differently now, so answers from the pages would not reach it"
+            f"{page} no longer contains the expected start-up code, so answers from the pages "
+            "would not reach it"
         )
     page.write_text(after, "utf8")
 

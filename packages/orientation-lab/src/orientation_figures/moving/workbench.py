@@ -87,7 +87,7 @@ class Known(traitlets.TraitType):
         ):  # fmt: skip
             if known[name] != UNKNOWN and known[name] not in allowed:
                 raise traitlets.TraitError(
-                    f"{self.name} has {name} {known[name]!r}; there is {', '.join(allowed)}"
+                    f"{self.name} has {name} {known[name]!r}; choose from {', '.join(allowed)}"
                 )
         return known
 

@@ -359,9 +359,9 @@ def _table(
     if len(numeric) < 3 or len(full) < 8:
         line, row = (sample or there)[0]
         raise RecordingError(
-            f"{name} is not a table of numbers: it has {number_of(len(full), 'row')} of one form "
-            f"with {number_of(len(numeric), 'column')} of numbers, and a recording needs at least "
-            "eight rows and three columns. "
+            f"{name} is not a table of numbers: it has {number_of(len(full), 'row')} of the same "
+            f"format, with {number_of(len(numeric), 'numeric column')}, but a recording needs at "
+            "least eight rows and three columns. "
             f"Line {line} begins: {' '.join(row)[:60]!r}"
         )
 

@@ -113,8 +113,8 @@ class Marks:
             and not (aside / place.relative_to(store.records)).exists()
         ]:
             raise CannotExport(
-                f"The record of {lost[0][0]!r}, {lost[0][1]} is missing from {store.records}, "
-                "although its marks were given. Grade again first."
+                f"{lost[0][0]}'s record for {lost[0][1]} is missing from {store.records}, "
+                "although it has been graded. Grade again first."
             )
         self.assignments = sorted({record.assignment for record in self.records})
         self.students: dict[str, list[Record]] = {}

@@ -498,7 +498,9 @@ def read_term(path: str | Path) -> Term:
     if "time-zone" not in said:
         raise file.bad("", "time-zone is missing, such as time-zone = 'Europe/Amsterdam'.")
     if not term.assignments:
-        raise file.bad("assignments", "it has no assignment, such as [assignments.hw1].")
+        raise file.bad(
+            "assignments", "it has no assignments. Add a table such as [assignments.hw1]."
+        )
     if term.attempts not in (IN_TIME, LAST):
         known = f"{IN_TIME!r} or {LAST!r}"
         raise file.bad("attempts", f"attempts must be {known}, not {term.attempts!r}.")

@@ -237,7 +237,8 @@ def plot(figure, Sheet):
         f"{times[-1]:.1f} seconds. "
         "The top plot shows, on a logarithmic scale, how far each description is from "
         "orthogonal. The middle plot shows its error against the reference. The bottom plot shows "
-        f"the margin of the Euler angles to gimbal lock, at least {margin.min():.0f} degrees. "
+        f"how far the Euler angles are from gimbal lock, which is never less than "
+        f"{margin.min():.0f} degrees. "
         f"At the end: {last}."
     )
     sheet.paint(axes)

@@ -62,7 +62,7 @@ def drawing(figure, Sheet):
     )
     sheet = Sheet(
         f"Three arrows in the frame N that should be the unit vectors of a triad A: {arrows}. "
-        f"{figure.check() or 'They are a direction cosine matrix'}. "
+        f"{figure.check() or 'They are the rows of a direction cosine matrix'}. "
         + (
             "Dotted arrows show the nearest triad."
             if nearest is not None
