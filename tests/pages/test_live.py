@@ -491,12 +491,13 @@ def test_numpy_is_fetched_and_checked(context, site, made_wheels):
 def test_plain_python_stands_in_for_numpy_and_says_so(shared):
     page = shared
     text = page.try_code(
-        3, "import numpy as np\na = np.array([[2.0, 1], [0, 4]])\nnp.linalg.inv(a)"
+        3, "import numpy as np\na = np.array([[2.0, 1], [0, 4]])\na @ a.T / [4, -8]"
     )
-    assert "array([[ 0.5  , -0.125]," in text
+    assert "array([[ 1.25, -0.5 ]," in text
     assert "computed by plain Python instead of NumPy" in page.words()
     assert page.outside() == []
-    page.try_code(3, "a = np.array([1.0, 2])\nnp.fft.fft(a)")
+    # The page fetches NumPy for a method that the stand-in's arrays lack, as it does for a function.
+    page.try_code(3, "a = np.array([1.0, 2])\na.cumprod()")
     assert "NumPy could not be fetched from cdn.jsdelivr.net" in page.below(3)
     assert page.try_code(3, "print(repr(a[1]))").strip() == "np.float64(2.0)"
 

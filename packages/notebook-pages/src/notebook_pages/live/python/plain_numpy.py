@@ -582,15 +582,16 @@ class Array:
     def round(self, decimals=0):
         return around(self, decimals)
 
+    def trace(self):
+        return trace(self)
+
     def __str__(self):
         return written_array(self, " ", "")
 
     def __repr__(self):
-        if not self.size and self.shape != (0,):
+        if not self.size and (self.shape != (0,) or self.kind != "f"):
             raise NotImplementedError("empty")
-        ending = ")" if self.size or self.kind != "f" else ", dtype=float64)"
-        if not self.size and self.kind != "f":
-            raise NotImplementedError("empty")
+        ending = ")" if self.size else ", dtype=float64)"
         return f"array({written_array(self, ', ', 'array(')}{ending}"
 
     def __format__(self, form):
