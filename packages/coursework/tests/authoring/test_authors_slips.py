@@ -122,9 +122,9 @@ def changed(old, new, text=QUESTION):
         ),
         (
             {"answer": changed("3 * x", "3.14 * x", ANSWER)},
-            "the solution has 3.14 for pi, so a student with all",
+            "the solution uses 3.14 for pi, so a student who uses all",
         ),
-        ({"answer": changed("3 * x", "3.1416 * x", ANSWER)}, "the solution has 3.1416 for pi"),
+        ({"answer": changed("3 * x", "3.1416 * x", ANSWER)}, "the solution uses 3.1416 for pi"),
         ({"before": [("code", DRAWN)]}, "trial/one: you draw n, but students would not see it"),
         (
             {

@@ -82,7 +82,7 @@ def test_a_release_from_the_wrong_folder_deletes_nothing(statics, tmp_path, monk
     monkeypatch.chdir(tmp_path)
     with pytest.raises(
         SystemExit,
-        match=r"was not made from any notebook in \S*mine, and neither are 1 other files",
+        match=r"was not made from any notebook in \S*mine, nor were 1 other files",
     ):
         main(["release", "--sources", "mine"])
     assert contents(tmp_path) == before
@@ -327,8 +327,8 @@ def test_a_release_says_which_points_trying_or_a_copy_earns(statics, tmp_path, m
     monkeypatch.chdir(course)
     main(["release", "beam"])
     said = capsys.readouterr().out
-    assert "beam/support, 3 points: its answer is one of 2 answers, so" in said
-    assert "beam/loads, 2 points: its answer is one of 125 answers, so" in said
+    assert "beam/support, 3 points: it has only 2 possible answers, so" in said
+    assert "beam/loads, 2 points: it has only 125 possible answers, so" in said
     assert "5 of 8 points are for answers that a script" in said and "beam/bent, 2" not in said
     assert (
         "8 of 8 points in exercise notebooks are for questions with one answer for everybody."

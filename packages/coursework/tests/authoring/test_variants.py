@@ -618,7 +618,7 @@ def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch)
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
-        ("count=6", "count=13", "there are only 12 different variants, not 13"),
+        ("count=6", "count=13", "gave only 12 different variants, not 13"),
         ("lever = draw", "draw", "exactly one `name = draw"),
     ],
 )

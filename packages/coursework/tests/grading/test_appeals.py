@@ -117,7 +117,7 @@ def test_an_appeal_goes_from_step_to_step_and_only_a_decision_accepts_it(out):
     journal.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=first.last, who="Ben")
     with pytest.raises(Collision, match="has changed this appeal"):  # upon what was seen before
         journal.appeal(record, SUM, "No.", state=REJECTED, of=first, after=first.last, who="Ann")
-    with pytest.raises(ValueError, match="the reason for rejecting it"):
+    with pytest.raises(ValueError, match="the reason for rejecting the appeal"):
         journal.appeal(record, SUM, " ", state=REJECTED, of=first, after=state().last, who="Ann")
     journal.appeal(
         record, SUM, "6 is not 5.", state=REJECTED, of=first, after=state().last, who="Ann"

@@ -547,7 +547,7 @@ def test_a_second_assignment_in_one_folder_can_be_judged_again(course, copied, t
     assert regrade(copied, solutions=course / "solutions").moves == []
     # What the term calls otherwise is another assignment.
     write_term(copied, assignments={"other": ["turns"]})
-    with pytest.raises(NothingToGrade, match="no assignment 'axes'; there are other"):
+    with pytest.raises(NothingToGrade, match="no assignment 'axes'; choose from other"):
         regrade(copied, solutions=course / "solutions")
 
 
@@ -1009,7 +1009,7 @@ def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
         gradebooks.CannotExport, match=r"German, .*\[gradebook\], and below it identifier = "
     ) as found:
         fill(tmp_path, marks, text)
-    assert "Its columns: Tunniste, Koko nimi" in str(found.value)
+    assert "This file has the columns Tunniste, Koko nimi" in str(found.value)
     names = {
         "identifier": "Tunniste",
         "full name": "Koko nimi",
@@ -1191,7 +1191,7 @@ def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(
     for _ in range(2):
         main(["export", out, "--lms", str(tmp_path / "gradebook.csv"), "--feedback", str(feedback)])
         data = feedback.read_bytes()
-    assert "4 filled in" in capsys.readouterr().out
+    assert "4 marks filled in" in capsys.readouterr().out
     filled = (tmp_path / "gradebook-filled.csv").read_text()
     points = {"right": "6", "mistaken": "5", "blank": "5", "nearly": "5.5"}
     for student, earned in points.items():

@@ -264,7 +264,7 @@ def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun,
     with pytest.raises(NothingToGrade, match="Of 6 notebooks .* 6 carry .*roster in term.toml"):
         grade(tmp_path / "in", tmp_path / "out", show=said, **options)
     assert (
-        "says that it belongs to 'student-00', but we grade it as 'folder of student-00'"
+        "says that it belongs to 'student-00', but we grade it for 'folder of student-00'"
         in said.getvalue()
     )
     assert "student-00" in (tmp_path / "out" / "whose.csv").read_text()
@@ -305,7 +305,7 @@ def test_a_journal_that_ends_within_a_line_is_read_and_goes_on(tmp_path, left):
     again = Journal(tmp_path)
     assert [one.who for one in again.by_people] == [
         "Ann"
-    ] and "ends within a line" in again.said_of_cut()
+    ] and "ends in the middle of a line" in again.said_of_cut()
     again.add(RECORD, "turns/sum", 0, who="Cem")
     assert [one.who for one in Journal(tmp_path).by_people] == [
         "Ann",
@@ -431,7 +431,7 @@ def test_a_picture_that_would_fill_the_memory_is_none():
     "submissions, out, said",
     [
         ("damaged.zip", "out", "not a zip archive, or it is damaged"),
-        ("nothing", "out", "is empty: it has no notebook"),
+        ("nothing", "out", "is empty: it contains no files"),
         ("class", "a-file", "File exists"),
     ],
 )
@@ -541,7 +541,7 @@ def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
     assert {one.student for one in found.again} == {
         *STUDENTS,
         "wrong",
-    } and "again for just these" in "\n".join(found.lines())
+    } and "To judge just these, run" in "\n".join(found.lines())
     few = shutil.copytree(begun.place / "in" / STUDENTS[0], tmp_path / "few" / STUDENTS[0]).parent
     assert grade(few, out.folder, solutions=calls, **options)["graded"] == 1
     assert out.read(STUDENTS[0], "beams").marks["beams/twice"].points == 3

@@ -448,7 +448,7 @@ def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, tmp_path):
     give(late, replace(late.read("carl", "turns"), notebooks=(RunNotebook(late=True),)))
     rules = late.folder / "term.toml"
     for command in (filled, lambda late: main(["term", str(late.folder)])):
-        with pytest.raises(SystemExit, match="1 are marked as late.*marked = 0.1"):
+        with pytest.raises(SystemExit, match="1 submission of .* as late.*marked = 0.1"):
             command(late)
     rules.write_text(rules.read_text().replace("a-day = 0.1", "a-day = 0.1\nmarked = 0.25"))
     assert filled(late) == ["4.8", "", "4.5"]

@@ -100,7 +100,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     assert "area: wrong (This is the area of the rectangle" in run("why ben first-steps")
     assert "Did you mean 'first-steps'?" in run("why ada first-step", fails=True)
     said = run("export marks --lms book.csv --feedback feedback.zip")
-    assert "4 filled in" in said and "3 pages of feedback" in said
+    assert "4 marks filled in" in said and "3 pages of feedback" in said
     # A mended question moves marks once somebody agrees, and the next export says what changed.
     edited(
         folder / "solutions" / "first-steps.ipynb", "symbols='x', worth=2", "symbols='x', worth=4"

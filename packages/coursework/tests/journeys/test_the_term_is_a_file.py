@@ -264,7 +264,7 @@ def test_a_mark_tells_its_life(course):
         "0 of 8 points: graded" in said and "8 of 8 points: the questions or the software" in said
     )
     assert "8 written to 'HW 2 (12)' of " in said
-    assert "There are no marks of 'eve'" in course.run("why", "eve", "hw2", fails=True)
+    assert "'eve' has no marks for 'hw2'" in course.run("why", "eve", "hw2", fails=True)
 
 
 def test_a_blind_worksheet_of_moodle_is_a_roster_and_is_filled(tmp_path):
@@ -285,7 +285,7 @@ def test_a_blind_worksheet_of_moodle_is_a_roster_and_is_filled(tmp_path):
     )
     assert course.points() == {"Participant 17": 4, "Participant 31": 0}
     said = course.export(book)
-    assert "2 filled in" in said
+    assert "2 marks filled in" in said
     assert list(course.column(book, "Grade").values()) == ["4", "", "0"]
 
 
@@ -317,7 +317,7 @@ def test_blackboards_own_gradebook_is_filled_without_a_word(tmp_path):
     begun = "[assignments.hw1]\n"
     term.write_text(term.read_text().replace(begun, f'{begun}column = "Homework 1"\n'))
     said = course.export(book)
-    assert "Blackboard: column 'Homework 1" in said and "2 filled in" in said
+    assert "Blackboard: column 'Homework 1" in said and "2 marks filled in" in said
     data = book.read_bytes()
     filled = [line.split("\t") for line in data.decode("utf-16").split("\r\n")]
     assert [line[8] for line in filled[1:3]] == ['"10"', '"0"'] and data[:2] == b"\xff\xfe"

@@ -296,7 +296,7 @@ class AuthoredQuestion:
         build = kinds()[self.public.kind].build
         if build is None:
             raise AuthorError(
-                f"{self.name}: a question of the kind {self.public.kind!r} cannot have `turns`."
+                f"{self.name}: a question of kind {self.public.kind!r} cannot have `turns`."
             )
         built = self.to_plain(build(self.turns))
         if self.fingerprint_of(built) != self.fingerprint_of(self.plain):
@@ -585,7 +585,7 @@ class Pages:
         """
         places = self.places()
         if len(places) >= sealing.NO_PAGE:
-            raise AuthorError("A question has too many mistakes and hints of its own. Remove some.")
+            raise AuthorError("A question has too many authored mistakes and hints. Remove some.")
         for key in sorted(self.contents):
             content, solution = self.contents[key]
             if solution:
@@ -694,8 +694,8 @@ def _demand_rubric(name: str, rubric: object, worth: float) -> None:
     for line, points in rubric.items():
         if not _is_number(points) or abs(points) > worth:
             raise AuthorError(
-                f"{name}: the line {line!r} of the rubric is worth {points!r}, but the question "
-                f"has {worth} points."
+                f"{name}: rubric line {line!r} is worth {points!r}, but the question only "
+                f"{worth} points."
             )
     earned = sum(points for points in rubric.values() if points > 0)
     if earned < worth:
@@ -711,7 +711,7 @@ def _demand_tolerance(name: str, tolerance: object, relative: object) -> None:
     """
     if tolerance is not None and (not _is_number(tolerance) or tolerance <= 0):
         also = (
-            " With `relative`, it is the tolerance of an answer of zero."
+            " With `relative`, it is the tolerance for an answer of zero."
             if relative is not None
             else ""
         )

@@ -177,7 +177,8 @@ def _chosen(course: Course, wanted: Collection[str]) -> Iterator[tuple[Path, lis
     for name in wanted:
         if name not in known:
             raise AuthorError(
-                f"There is no question or notebook {name!r}; there are {', '.join(sorted(known))}."
+                f"There is no question or notebook {name!r}; choose from "
+                f"{', '.join(sorted(known))}."
             )
     for path, names in asked.items():
         chosen = [name for name in names if not wanted or {name, path.stem} & {*wanted}]
@@ -213,8 +214,8 @@ def bank(
     for folder in (course.exercises, course.sealed, course.archive.parent):
         if path.is_relative_to(folder.resolve()):
             raise AuthorError(
-                f"{path} would hold all answers, and students may get what is in {folder}. Write "
-                "it somewhere else."
+                f"{path} would contain all answers, and students may get the files in {folder}. "
+                "Write it somewhere else."
             )
     paths, names = zip(*_chosen(course, wanted))
     # Only the author needs what a solution prints.

@@ -99,7 +99,7 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
     asked = {name: one for some in found for name, one in some.items()}
     exercises = {name: one for name, one in asked.items() if name.partition("/")[0] != CHAPTERS}
     lines = [
-        f"{name}, {one.worth:g} points: its answer is one of {one.possible} answers, so a script "
+        f"{name}, {one.worth:g} points: it has only {one.possible} possible answers, so a script "
         "can try them all. Ask for several parts in one answer or for a function, or set exam=True."
         for name, one in asked.items()
         if one.possible and one.worth > 1

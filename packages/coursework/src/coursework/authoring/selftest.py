@@ -219,8 +219,8 @@ def _try_mistakes(
         covered = mistake.note in GENERAL and known
         if reply.outcome != "wrong" or not covered and (mistake.note, mistake.details) not in known:
             faults.append(
-                f'The mistake "{mistake.note}" gets "{reply.outcome}", {reply.note!r}, and not its '
-                "own message."
+                f'The mistake "{mistake.note}" gets "{reply.outcome}", {reply.note!r}, instead '
+                "of its own message."
             )
         elif not reply.messages:
             faults.append(f'The mistake "{mistake.note}" has no message.')
@@ -493,8 +493,8 @@ def write_page(
         f"{sum(bool(f.faults) for f in findings)} with "
         f"faults. {number_of(sum(len(f.mistakes) for f in findings), 'mistake')} recognised.</p>"
         "<p>The second-to-last column counts the possible answers where an answer is a few words, "
-        "an order or small whole numbers, since a program can try them all. A program that builds "
-        "formulas finds more.</p>"
+        "an ordering or small whole numbers, since a program can try them all. A program that "
+        "builds formulas finds more.</p>"
         f"{before}{'' if leaked is None else leaks_found}<h2>Questions</h2><table><thead><tr>"
         + "".join(f'<th scope="col">{head}</th>' for head in COLUMNS)
         + f"</tr></thead><tbody>{''.join(rows)}</tbody></table></html>"

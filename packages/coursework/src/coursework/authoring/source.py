@@ -115,7 +115,7 @@ def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
     unknown = sorted(set(only) - {path.stem for path in found})
     if unknown:
         known = ", ".join(path.stem for path in found)
-        raise author.AuthorError(f"There is no {unknown[0]}.ipynb in {folder}; there are {known}.")
+        raise author.AuthorError(f"{folder} has no {unknown[0]}.ipynb; choose from {known}.")
     return [path for path in found if not only or path.stem in only]
 
 
@@ -331,8 +331,8 @@ def _demand_pi(file: str, notebook: NotebookNode) -> None:
             found = PI_ROUNDED.search(re.sub(r"#.*", "", region))
             if found:
                 raise author.AuthorError(
-                    f"{file}, cell {number}: the solution has {found[0]} for pi, so a student "
-                    "with all the digits would be marked wrong. Write `sm.pi` or `math.pi`."
+                    f"{file}, cell {number}: the solution uses {found[0]} for pi, so a student "
+                    "who uses all the digits would be marked wrong. Write `sm.pi` or `math.pi`."
                 )
 
 

@@ -97,8 +97,8 @@ class Rule:
                     break
             else:
                 raise AuthorError(
-                    f"{self.name}: after {MOST_ATTEMPTS} attempts there are only {order} "
-                    f"different variants, not {self.count}. Give longer lists, or a smaller "
+                    f"{self.name}: {MOST_ATTEMPTS} attempts gave only {order} different "
+                    f"variants, not {self.count}. Give longer lists, or a smaller "
                     "count."
                 )
         return found[number]

@@ -67,12 +67,12 @@ class Course:
         used = {stem for name in homework for stem in known[name]}
         if unknown := sorted(used - set(self.sources)):
             raise NothingToGrade(
-                f"There is no notebook with solutions {', '.join(map(repr, unknown))} in {folder}; "
-                f"there are {', '.join(self.sources)}."
+                f"{folder} has no notebook with solutions named "
+                f"{', '.join(map(repr, unknown))}; choose from {', '.join(self.sources)}."
             )
         if strangers := sorted(set(only) - set(known)):
             raise NothingToGrade(
-                f"There is no assignment {strangers[0]!r}; there are {', '.join(known)}."
+                f"There is no assignment {strangers[0]!r}; choose from {', '.join(known)}."
             )
         self.assignments = {name: known[name] for name in known if name in (only or homework)}
         known = (
@@ -82,7 +82,7 @@ class Course:
         there = list(itertools.chain(*asked.values()))
         if lost := set(itertools.chain(*self.sittings.values())).difference(there):
             raise NothingToGrade(
-                f"There is no question {min(lost)!r}; there are {', '.join(there)}."
+                f"There is no question {min(lost)!r}; choose from {', '.join(there)}."
             )
         self.names = {
             name: list(

@@ -73,7 +73,7 @@ ARGUMENTS = {
             argument(
                 "--scheduler",
                 metavar="ADDRESS",
-                help="run the notebooks on this Dask cluster, such as tls://host:8786",
+                help="run the notebooks on the Dask cluster at this address, such as tls://host:8786",
             ),
             argument(
                 "--keys",
@@ -339,8 +339,8 @@ def _bring_in_decisions(out: str, yes: bool) -> None:
         _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
     except ValueError as error:
         sys.exit(
-            f"Your decisions are saved, but we could not apply them yet: {error} Then run "
-            f"`coursework regrade {out}`."
+            f"Your decisions are saved, but we could not apply them yet: {error} Once "
+            f"that is done, run `coursework regrade {out}`."
         )
 
 
@@ -573,7 +573,7 @@ def cluster(
             "can run code on this cluster.\n"
             f"On each worker machine, with a copy of that folder:\n"
             f"  coursework cluster --keys {folder.name} --worker {address}\n"
-            f"Then, where the notebooks are:\n"
+            f"Then, on the machine with the notebooks:\n"
             f"  coursework grade ... --scheduler {address} --keys {folder.name}\n"
             "Stop it with Ctrl+C.",
             flush=True,

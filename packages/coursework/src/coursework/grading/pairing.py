@@ -111,7 +111,7 @@ def read(
     except intake.Unfit as error:
         raise NothingToGrade(str(error)) from None
     if not notebooks and not refused:
-        raise NothingToGrade(f"{submissions} is empty: it has no notebook and no other file.")
+        raise NothingToGrade(f"{submissions} is empty: it contains no files.")
     return notebooks, refused
 
 
@@ -194,7 +194,7 @@ def say(
         print(
             f"We leave {number_of(number, 'notebook')} of {name} alone"
             + (
-                f": to grade it, add [assignments.{name}] to term.toml."
+                f": to grade {name}, add [assignments.{name}] to term.toml."
                 if term.assignments and name not in term.assignments
                 else "."
             ),
@@ -269,7 +269,7 @@ def _say_foreign(work: Sequence[Work], show: TextIO) -> list[Foreign]:
     for one, notebook in foreign[:MOST_SHOWN]:
         print(
             f"  ! {in_a_line(notebook.file, 120)} says that it belongs to "
-            f"{in_a_line(notebook.says, 60)!r}, but we grade it as {in_a_line(one.student, 60)!r}",
+            f"{in_a_line(notebook.says, 60)!r}, but we grade it for {in_a_line(one.student, 60)!r}",
             file=show,
         )
     if len(foreign) > MOST_SHOWN:
@@ -350,9 +350,9 @@ def say_other_numbers(
         if other > max(FEW_FOREIGN, MANY_OTHER_NUMBERS * given):
             print(
                 f"LOOK AT THIS FIRST: in {assignment}, {other} of {number_of(given, 'answer')} are "
-                "right for numbers other than the student's own, so they earn nothing. Are these "
-                "the IDs that the students wrote in their notebooks? If not, grade again with the "
-                "right roster in term.toml. Nothing is lost.",
+                "right for numbers other than the student's own, so they earn nothing. If "
+                "the students wrote other IDs in their notebooks, grade again with the right "
+                "roster in term.toml. Nothing is lost.",
                 file=show,
             )
 

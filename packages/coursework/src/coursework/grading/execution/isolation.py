@@ -63,9 +63,9 @@ HOW_TO_GET = {
     "kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu) or start as root",
     LANDLOCK: "use Linux 6.2 or newer with Landlock enabled (lsm=landlock,... on the kernel's "
     "command line)",
-    SECCOMP: "use Linux on x86-64 or ARM64 with seccomp filters, and no container that forbids "
-    "them",
-    LIMITS: "grade on a system that lets a program lower its limits of memory, time and files",
+    SECCOMP: "use Linux on x86-64 or ARM64 with seccomp filters, outside any container that "
+    "forbids them",
+    LIMITS: "grade on a system that lets a program lower its limits on memory, time and files",
     PRIVILEGES: "grade as an ordinary user, or as root with the right to change users",
 }
 

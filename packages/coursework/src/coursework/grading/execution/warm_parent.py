@@ -280,7 +280,7 @@ class WarmParent:
                 "runs it as another user, but only their owner may read them, perhaps "
                 "because of a umask such as 077. Let everybody read them, with `chmod -R "
                 "o+rX` on their folder, and install bubblewrap or use `chmod o+x` on the "
-                "folders above it. Or grade as an ordinary user with a Python of their own"
+                "folders above it. Or grade as an ordinary user who has their own Python"
             )
         try:
             Path("trial").write_bytes(b"x" * 100)

@@ -487,7 +487,7 @@ def fill(
         now_written[student] = points
         book.put(line, place, points.replace(".", ",") if comma else points)
     if dry_run:
-        said.append(f"{len(now_written)} would be filled in. We wrote nothing.")
+        said.append(f"{number_of(len(now_written), 'mark')} would be filled in. We wrote nothing.")
     else:
         # First what is ours: of a crash in between, the next run knows more than it
         # wrote, and nothing is overlooked.
@@ -500,7 +500,7 @@ def fill(
         )
         marks.journal.append([event])
         write(target, bytes(book), private=True)
-        said.append(f"{len(now_written)} filled in: {target}")
+        said.append(f"{number_of(len(now_written), 'mark')} filled in: {target}")
     shown = book.column(
         "student", "lastname", "full name", "username", "orgdefinedid", "identifier"
     )
@@ -587,7 +587,7 @@ def _system(book: Gradebook) -> System:
         f"This is not a gradebook from {', '.join(needed)}, nor a Moodle one in a supported "
         f"language ({', '.join(LANGUAGES)}). Map the columns in term.toml: "
         "[gradebook], and below it identifier = '...' and grade = '...'. "
-        f"Its columns: {', '.join(book.header)[:300]}"
+        f"This file has the columns {', '.join(book.header)[:300]}"
     )
 
 
@@ -608,7 +608,7 @@ def _column(book: Gradebook, system: System, column: str | None) -> int:
     if len(places) != 1:
         names = [book.header[place] for place in places] or book.header
         raise CannotExport(
-            "Name the assignment's column in term.toml, as column = '...' in its table. The "
+            "In term.toml, add column = '...' to the assignment's table. The "
             f"gradebook has the columns {', '.join(map(repr, names))}."
         )
     return places[0]

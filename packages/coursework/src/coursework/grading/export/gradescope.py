@@ -198,7 +198,7 @@ def run(home: Path = HOME) -> None:
         if found is None:
             return _say(
                 results,
-                f"We cannot find you on the list of this course. {why} Ask your instructor.",
+                f"We cannot find you on this course's list. {why} Ask your instructor.",
             )
         student = found
     with tempfile.TemporaryDirectory() as out:

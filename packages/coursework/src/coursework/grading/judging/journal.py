@@ -420,9 +420,9 @@ class Journal:
         if not last or not _is_cut(last):
             return ""
         return (
-            f"{self.path} ends within a line, because the machine stopped while saving a "
-            "decision. That decision does not count, and the next one will move its fragment to "
-            f"{CUT}."
+            f"{self.path} ends in the middle of a line, because the machine stopped while saving "
+            "a decision. That decision does not count. When the next one is saved, the fragment "
+            f"moves to {CUT}."
         )
 
     # -- what they come to
@@ -525,12 +525,12 @@ class Journal:
                 "since we do not cut anything off."
             )
         if state not in (RAISED, UNDER_REVIEW, REJECTED) or (state == RAISED) != (of is None):
-            raise ValueError(f"An appeal is raised, under review or rejected, not {state!r}.")
+            raise ValueError(f"An appeal can be raised, under review or rejected, not {state!r}.")
         if not words and state != UNDER_REVIEW:
             raise ValueError(
                 "The student's words are missing."
                 if state == RAISED
-                else "Give the reason for rejecting it."
+                else "Give the reason for rejecting the appeal."
             )
         first = of.id if of else ""
         one = Appeal(**_on(record, question) | more, state=state, words=words, appeal=first)
@@ -732,9 +732,9 @@ class Journal:
         if {"student", "question", "words"} <= header:
             return self._take_in_appeals(rows, records, who)
         raise ValueError(
-            f"{path}: a table of decisions is a copy of undecided.csv, with its columns "
-            "id and version and with credit filled in; a table of appeals has the columns student, "
-            f"question and words. This table has {', '.join(sorted(header)) or 'none'}."
+            f"{path}: a table of decisions is a copy of undecided.csv that keeps its "
+            "columns id and version and has credit filled in; a table of appeals has the columns "
+            f"student, question and words. This table has {', '.join(sorted(header)) or 'none'}."
         )
 
     def _take_in_decisions(
@@ -767,7 +767,7 @@ class Journal:
             there = standing.get((record.student, record.assignment, question))
             if there and there.answer == digest_of_answer(record, question):
                 if there.who != who:
-                    unused.append(f"{where}: {there.who} has decided, and gave {there.credit}")
+                    unused.append(f"{where}: {there.who} already gave {there.credit}")
                     continue
                 if (there.credit, there.comment, there.rubric) == (
                     credit,

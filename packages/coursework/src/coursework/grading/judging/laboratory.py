@@ -89,7 +89,7 @@ class Policies:
             *([f"{name}@{TAKEN_OUT}"] if taken_out else []),
         }
         if wanted & set(self.full_credit):
-            said = "This question was faulty, so everyone who was asked it gets its points."
+            said = "This question was faulty, so everyone who had it gets full points."
             return replace(
                 mark,
                 outcome="correct",
@@ -246,8 +246,8 @@ class Laboratory:
         if self.again:
             said.append(
                 f"{_students(self.again)} would become undecided, because the stored answers are "
-                f"not enough to judge {_about(self.again)}. Run the same `coursework grade` "
-                "command again for just these."
+                f"not enough to judge {_about(self.again)}. To judge just these, run the same "
+                "`coursework grade` command again."
             )
         if self.even:
             said.append(f"{_students(self.even)} would keep the same fraction of the points.")

@@ -496,7 +496,7 @@ def read_term(path: str | Path) -> Term:
             raise file.bad("time-zone", f"there is no time zone {zone!r}.") from None
     term: Term = from_table(file, Term, "", {"name": path.parent.name} | said)
     if "time-zone" not in said:
-        raise file.bad("", "time-zone is missing, such as time-zone = 'Europe/Amsterdam'.")
+        raise file.bad("", "add the time zone, such as time-zone = 'Europe/Amsterdam'.")
     if not term.assignments:
         raise file.bad(
             "assignments", "it has no assignments. Add a table such as [assignments.hw1]."
@@ -556,7 +556,9 @@ def _demand_droppable(file: _File, term: Term) -> None:
         of = rule.of or tuple(term.assignments)
         if strangers := [name for name in of if name not in term.assignments]:
             there = ", ".join(term.assignments)
-            raise file.bad("drop.of", f"drop.of: there is no {strangers[0]!r}; there are {there}.")
+            raise file.bad(
+                "drop.of", f"drop.of: there is no assignment {strangers[0]!r}; choose from {there}."
+            )
         if type(rule.lowest) is not int or not 0 <= rule.lowest < len(of):
             raise file.bad(
                 "drop.lowest",
@@ -643,7 +645,7 @@ def _times(path: Path, zone: datetime.tzinfo) -> Times:
         column = next((name for name in TIMES if name in row), None)
         if column is None:
             raise BadTerm(
-                f"{path}: no column gives the time of a hand-in. Such a column may be called "
+                f"{path}: no column gives the time of submission. It can be called "
                 f"{', '.join(TIMES)}."
             )
         if row[column] in ("", "-"):
@@ -810,9 +812,9 @@ def unknown_times(results: Iterable[Result], term: Term) -> list[str]:
     marked = [one.assignment for one in graded if one.late and not one.handed_in]
     if marked and term.late.marked is None and term.late.costs:
         raise BadTerm(
-            f"Of {', '.join(sorted(set(marked)))}, {len(marked)} are marked as late by the "
-            "system, which does not say when they came in. Set the cost, such as marked = 0.1 "
-            "(or 0) in [late], or give a table of times."
+            f"Your system marks {number_of(len(marked), 'submission')} of "
+            f"{', '.join(sorted(set(marked)))} as late, without a time. Set the cost in [late], "
+            "such as marked = 0.1 (or 0), or give a table of times."
         )
     return [
         f"{name}: {number_of(unknown.count(name), 'notebook')} came in at an unknown time, so "

@@ -30,7 +30,7 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         known = own or sorted({owner for owner, _ in all_given})
         near = difflib.get_close_matches(assignment if own else student, known, 1)
         raise ValueError(
-            f"There are no marks of {student!r} for {assignment!r} in {store.folder}. There are "
+            f"{student!r} has no marks for {assignment!r} in {store.folder}. There are "
             f"marks {'for' if own else 'of'} {', '.join(known[:40]) or 'nobody yet'}"
             f"{', but its record is gone: grade again' if given else ''}."
             f"{f' Did you mean {near[0]!r}?' if near and not given else ''}"
