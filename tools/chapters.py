@@ -88,7 +88,7 @@ def faults():
         for part, where in (("objectives", text[:1]), ("summary", text[-1:])):
             if not lines_matching(text, rf"^(:class: {part})\s*$"):
                 yield (
-                    f"{where[0] if where else path}: no {part}; it is an `{{admonition}}` with "
+                    f"{where[0] if where else path}: no {part}; add an `{{admonition}}` with "
                     f"`:class: {part}`"
                 )
         exercises = lines_matching(text, r"^:label: (exercise-\S+)")

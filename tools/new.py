@@ -132,7 +132,7 @@ def question_cells(name, kind):
 
 
 def asked(kind):
-    return f"Bind `{EXAMPLES[kind].variable}` to {EXAMPLES[kind].is_}."
+    return f"Set `{EXAMPLES[kind].variable}` to {EXAMPLES[kind].is_}."
 
 
 def chapter_cells(name, title):
@@ -299,17 +299,17 @@ def new_question(name, title, kind):
     notebook, _, question = name.partition("/")
     if not re.fullmatch(f"{NAME}/{NAME}", name) or notebook == "chapters":
         sys.exit(
-            "The NAME of a question is CHAPTER/QUESTION, in lower-case letters and hyphens, not "
-            f"{name!r}."
+            "The NAME of a question is CHAPTER/QUESTION in lower-case letters and hyphens; you "
+            f"gave {name!r}."
         )
     if kind not in EXAMPLES:
-        sys.exit(f"There is no KIND of question {kind!r}; there are {', '.join(EXAMPLES)}.")
+        sys.exit(f"There is no KIND of question {kind!r}; choose from {', '.join(EXAMPLES)}.")
     source = source_of(notebook)
     if not source.exists():
         sys.exit(f"There is no {source}: `make new-chapter NAME={notebook} TITLE=...` makes it.")
     old = nbformat.read(source, as_version=4)
     if any(f"('{name}'" in cell.source or f'("{name}"' in cell.source for cell in old.cells):
-        sys.exit(f"{source} has a question {name} already; nothing was changed.")
+        sys.exit(f"{source} already has a question {name}; nothing was changed.")
     add_cells(
         source, exercise_cells(old, name, title or question.replace("-", " ").capitalize(), kind)
     )

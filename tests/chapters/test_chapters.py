@@ -170,7 +170,7 @@ def test_a_new_chapter_has_all_its_parts(book):
         ),
         (
             ("question", "gimbal-lock/twist", "", "--kind", "riddle"),
-            "no KIND of question 'riddle'; there are expr",
+            "no KIND of question 'riddle'; choose from expr",
         ),
     ],
 )
@@ -194,7 +194,7 @@ def test_a_new_question_of_every_kind_is_one_that_can_be_released(book):
     for kind in new.EXAMPLES:
         new.new_question(f"trial/{kind.replace(' ', '-').lower()}", "", kind)
     assert len(read_source(path).questions) == len(new.EXAMPLES)
-    with pytest.raises(SystemExit, match="has a question trial/words already"):
+    with pytest.raises(SystemExit, match="already has a question trial/words"):
         new.new_question("trial/words", "", "words")
 
 

@@ -217,7 +217,10 @@ def test_a_trajectory_is_taken_for_no_instrument_and_the_answer_to_the_question_
     assert "1.3405 0.6266 1.6575" in answer  # the answer shows its first rows
     for columns, words in (
         ("time=1 gyroscope=2-6", "a vector has three"),
-        ("time=1 gyrscope=2-4", "'gyrscope' is not one of time, gyroscope, accelerometer"),
+        (
+            "time=1 gyrscope=2-4",
+            "'gyrscope' is not a kind of column: choose from time, gyroscope, accelerometer",
+        ),
         ("time=1 gyroscope=7-9", "does not fit the 8 columns"),
         ("gyroscope=2,3,4", "write an entry such as gyroscope=2-4"),
     ):

@@ -111,7 +111,7 @@ def changes(stored, current):
     )
     for line in sorted(then.keys() | now.keys()):
         if line not in now or line not in then:
-            yield f"{line}: asked {'no more' if line in then else 'for the first time'}"
+            yield f"{line}: {'no longer asked' if line in then else 'asked for the first time'}"
         elif not np.allclose(then[line], now[line], atol=ROUNDING):
             yield f"{line}: was {then[line]}, is {now[line]}"
 

@@ -73,8 +73,8 @@ PARTS = {"packages": fetch_packages, "wheels": fetch_wheels}
 def main(names):
     if unknown := set(names) - set(PARTS):
         sys.exit(
-            f"there is no {', '.join(sorted(unknown))} to set up; give {' or '.join(PARTS)}, or "
-            "nothing for both"
+            f"cannot set up {', '.join(sorted(unknown))}; give {' or '.join(PARTS)}, or nothing "
+            "for both"
         )
     for name in names or PARTS:
         try:

@@ -128,7 +128,7 @@ def _add_recording(commands):
         "--columns",
         default="",
         metavar="WHAT",
-        help="meaning of the columns, if the file does not give it, counted from 1: for example "
+        help="meaning of the columns (counted from 1), if the file does not give it, such as "
         "'time=1 gyroscope=2-4:rad/s accelerometer=5-7'",
     )
     parser.add_argument(
@@ -190,7 +190,7 @@ def _declared(words):
 def _explain(chosen):
     try:
         if not chosen.noise >= 0:
-            raise ValueError(f"--noise is {chosen.noise:g}: give degrees, at least 0")
+            raise ValueError(f"--noise is {chosen.noise:g}: give at least 0 degrees")
         texts = [_given(chosen.first), _given(chosen.second)]
         declared = [_declared(words) for words in (chosen.first_is, chosen.second_is)]
         found = explain(

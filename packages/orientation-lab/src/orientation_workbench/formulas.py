@@ -29,7 +29,7 @@ class Value:
         self.operation, self.parts = operation, parts
 
     def __bool__(self):
-        raise TypeError("a formula that is recorded must use where and pick instead of if")
+        raise TypeError("a recorded formula must use where and pick instead of if")
 
 
 def made(operation, *parts):

@@ -57,7 +57,7 @@ def add_live_code(app, pagename, templatename, context, doctree):
     kinds = on_the_page(kinds_of_cells()[pagename]) if pagename in kinds_of_cells() else []
     if kinds and len(kinds) != count:
         raise ExtensionError(
-            f"{pagename}: cells on the page: {count}, but to run in its notebook: {len(kinds)}"
+            f"{pagename} shows {count} cells with code, but its notebook has {len(kinds)} to run"
         )
     context["live_data"] = json.dumps(
         {

@@ -195,8 +195,8 @@ def classify(cells):
                 needs.add("numpy")
             if not needs and known:
                 raise RuntimeError(
-                    f"cell {position + 1} gives a different result in the page from the stored "
-                    "one (if that is out of date, run `make "
+                    f"in the page, cell {position + 1} gives a result other than the stored one "
+                    "(if that is out of date, run `make "
                     f"notebooks`):\n{cell.source}\n{outcome.get('traceback', report['messages'])}"
                 )
         tags = cell.metadata.get("tags", [])

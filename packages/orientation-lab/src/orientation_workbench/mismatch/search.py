@@ -126,7 +126,7 @@ def side(kinds, numbers, half, declared, noise):
         for reading, enough in zip(readings, some, strict=True)
     ):
         raise ValueError(
-            f"the numbers may differ by {math.degrees(noise):.3g} degrees, but they describe a "
+            f"the tolerance is {math.degrees(noise):.3g} degrees, but the numbers describe a "
             f"rotation of only {math.degrees(moves.min()):.3g} degrees: too small to judge by"
         )
     return Side([each for each, fits in zip(readings, some) if fits], dcms[some], doubts[some])

@@ -563,8 +563,8 @@ def _choices(group):
 #: the turns about the body's own axes.
 #: The last line of a list of descriptions.
 NONE_OF_THESE = (
-    "None of these? Then something else is wrong that these poses hide: paste more poses, rotated "
-    "about all axes."
+    "None of these? Then these poses hide some other fault: paste more poses, rotated about all "
+    "axes."
 )
 FURTHER_POSES = (
     ("rotate it by about 40 degrees about its x axis", (("x", 40),)),

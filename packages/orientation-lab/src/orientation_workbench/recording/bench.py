@@ -653,7 +653,7 @@ class _Bench:
         words = f"angle random walk {walk:.2g} °/√s, {60 * walk:.2g} °/√h"
         evidence = {"°/√s": noise.angle_random_walk.round(4).tolist()}
         if np.isnan(noise.bias_instability).all():
-            words += f"; {seconds:.0f} s are too short to measure how steady its bias is"
+            words += f"; {seconds:.0f} s is too short to measure how steady its bias is"
         else:
             worst = int(np.nanargmax(noise.bias_instability))
             words += (
@@ -1015,8 +1015,8 @@ class _Bench:
             advice = "" if lean < 3 else "Was it zeroed while it was not level? "
             if axis.startswith("-"):
                 advice += (
-                    "Either the ground's axis points down, or the accelerometer does, as in "
-                    "iPhones: then change the signs of the latter."
+                    "Either the ground's axis points down, or the accelerometer's signs are "
+                    "reversed, as in iPhones: then change them."
                 )
             words = f"up is {lean:.1f}° away from the ground's {axis} axis"
             light = YELLOW if advice else GREEN

@@ -208,7 +208,9 @@ def _told(table: Table, columns: str) -> Table:
     for entry in columns.split():
         told = _TOLD.fullmatch(entry)
         if told and told[1] not in _NAMED:
-            raise RecordingError(f"{told[1]!r} is not one of {', '.join(_NAMED)}")
+            raise RecordingError(
+                f"{told[1]!r} is not a kind of column: choose from {', '.join(_NAMED)}"
+            )
         first, last = (int(told[2]), int(told[3] or told[2])) if told else (0, 0)
         if not told or not 1 <= first <= last <= len(names):
             raise RecordingError(

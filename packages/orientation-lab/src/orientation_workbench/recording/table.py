@@ -479,7 +479,7 @@ def _from_log(rows: Sequence[list[str]], name: str, comma: bool, key: int) -> li
             continue
     if not tables:
         raise RecordingError(
-            f"{name} looks like a log, but none of its kinds of lines is a table of numbers"
+            f"{name} looks like a log, but no kind of line in it forms a table of numbers"
         )
     return tables
 

@@ -440,7 +440,7 @@ function sideOf(poses, declared, table, noise) {
   const some = side.filter(({ moves, doubt }) => moves >= MOTION * (doubt + noise));
   // That refuses all where it holds of a reading that is no mix-up, or none if both sides have it.
   if (!side.some((one) => !some.includes(one) && (one.reading.faults === 0 || (one.reading.kind === 'quaternion' && one.reading.shared.length)))) return some;
-  throw new Error(`the numbers may differ by ${short(noise / DEGREE, 3)} degrees, but they describe a rotation of only ${short(Math.min(...side.map(({ moves }) => moves)) / DEGREE, 3)} degrees: too small to judge by`);
+  throw new Error(`the tolerance is ${short(noise / DEGREE, 3)} degrees, but the numbers describe a rotation of only ${short(Math.min(...side.map(({ moves }) => moves)) / DEGREE, 3)} degrees: too small to judge by`);
 }
 
 // Radians of the largest turn in some poses, whatever their hand.
