@@ -131,11 +131,11 @@ def test_a_blank_copy_counts_less_than_finished_work(course):
     os.utime(folder / "hw1.ipynb", (1, 1))
     said = course.grade()
     assert (
-        "hw1-Copy1.ipynb  (hw1; the name of the folder) DOES NOT COUNT: it answers nothing" in said
+        "hw1-Copy1.ipynb  (hw1; the name of the folder) DOES NOT COUNT: it has no answers" in said
     )
     assert course.points("hw1") == {"ada": 8}
     page = (course.marks / "feedback" / "ada" / "hw1.html").read_text()
-    assert "was not counted: it answers nothing" in page
+    assert "was not counted: it has no answers" in page
 
 
 def test_a_copy_with_nothing_but_remarks_counts_less_than_finished_work(course):
@@ -144,7 +144,7 @@ def test_a_copy_with_nothing_but_remarks_counts_less_than_finished_work(course):
     made.cells.append(nbformat.v4.new_code_cell("# I shall do this tomorrow", id="remark"))
     nbformat.write(made, folder / "hw1-Copy1.ipynb")
     os.utime(folder / "hw1.ipynb", (1, 1))
-    assert "DOES NOT COUNT: it answers nothing" in course.grade()
+    assert "DOES NOT COUNT: it has no answers" in course.grade()
     assert course.points("hw1") == {"ada": 8}
 
 

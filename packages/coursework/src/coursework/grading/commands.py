@@ -83,8 +83,8 @@ ARGUMENTS = {
             argument(
                 "--allow-weak-isolation",
                 action="store_true",
-                help="run students' code even if this machine cannot isolate it; use it only on a "
-                "machine that you can afford to lose",
+                help="run students' code even if this machine cannot isolate it; use this only on "
+                "a machine that you can afford to lose",
             ),
             argument(
                 "--as-listed",
@@ -151,8 +151,8 @@ ARGUMENTS = {
                 "files",
                 nargs="+",
                 metavar="FILE",
-                help="the journal.jsonl in the other grader's folder of marks; a copy of "
-                "undecided.csv with credit filled in, or the ticks.csv of a sitting; or a "
+                help="the journal.jsonl in the other grader's folder of marks, a copy of "
+                "undecided.csv with credit filled in, the ticks.csv of a sitting, or a "
                 "table of appeals with the columns student, question and words",
             ),
             GRADER,
@@ -187,7 +187,7 @@ ARGUMENTS = {
             argument(
                 "--filled",
                 metavar="FILE.csv",
-                help="file for the filled gradebook (default: FILE-filled.csv)",
+                help="file for the filled-in gradebook (default: FILE-filled.csv)",
             ),
             argument(
                 "--as-of",
@@ -214,7 +214,9 @@ ARGUMENTS = {
                 metavar="FILE.zip",
                 help="write the feedback pages, named as your LMS expects",
             ),
-            argument("--nbgrader", metavar="FILE.csv", help="file for nbgrader's table of marks"),
+            argument(
+                "--nbgrader", metavar="FILE.csv", help="file for the marks in nbgrader's format"
+            ),
         ],
     ),
     "gradescope": (

@@ -169,7 +169,7 @@ def _work_of(
         else:
             answers, in_time = ranks[notebook.file]
             reasons = (
-                "it answers nothing" if answers_most and not answers else "",
+                "it has no answers" if answers_most and not answers else "",
                 "it was late, and another was on time" if in_time_most and not in_time else "",
                 "another is newer" + ("" if notebook.order[0] else ", by the times of the files"),
             )

@@ -729,7 +729,7 @@ class _Once:
         if ended["scratch full"]:
             outcome, error = "disk", "It filled its scratch folder."
         elif self.killed_for == "output":
-            outcome, error = "output", "It wrote more than the limit for a hand-in."
+            outcome, error = "output", "It wrote more than a submission may contain."
         elif self.killed_for == "timeout" or how.get("signal") == signal.SIGXCPU:
             outcome, error = "timeout", "It exceeded the time limit."
         elif "signal" in how:

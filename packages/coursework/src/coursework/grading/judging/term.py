@@ -422,7 +422,7 @@ NEW_ASSIGNMENT = """
 # due = 2026-10-05T23:59:00
 # weight = 1              # in the total of the course
 # column = "{title}"      # in the gradebook that your system exports: its name, or how it begins
-# times = "worksheet.csv" # when each student handed in, if the names of the files do not say
+# times = "worksheet.csv" # when each student handed in, if the file names do not show it
 # notebooks = ["{plain}"] # if the assignment has other or several notebooks
 """
 

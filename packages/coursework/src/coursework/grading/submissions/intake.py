@@ -287,7 +287,7 @@ def take_in(
             of_system = claim and claim.given_by_system and not claim.file
             if not (of_system or _is_by_the_way(name)) or (claim and source not in have):
                 whose = claim.student if claim else ""
-                can = " The notebook beside it can read it." if source in have else ""
+                can = " The notebook in its folder can read it." if source in have else ""
                 refused.append(
                     Refused(name, whose, f"Not a notebook: its name does not end in .ipynb.{can}")
                 )
