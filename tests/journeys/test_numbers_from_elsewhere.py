@@ -98,7 +98,7 @@ def test_angles_that_were_read_and_built_by_two_sequences_are_named(first):
     for written in (Rotation.as_quat, Rotation.as_matrix):
         texts = [str(written(each)) for each in (turn, rebuilt)]
         code, answer = explained("--first-is", "xyzw", "--second-is", "xyzw", *texts)
-        assert "they were computed as" in answer and "(space fixed)" in answer, answer
+        assert "angles were computed as" in answer and "(space fixed)" in answer, answer
 
 
 def test_one_special_pose_decides_nothing():
