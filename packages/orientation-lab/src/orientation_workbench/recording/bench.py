@@ -463,7 +463,10 @@ class _Bench:
                 "Hold it still in at least four poses, tilted well away from each other.",
             )
         else:
-            scale = self._scale(fitted, constant, poses, drifting)
+            # A drift is sought between five poses or more, so fewer cannot exclude it.
+            scale = self._scale(
+                fitted, constant, poses, drifting or (len(poses) < 5 and not at_rest)
+            )
             if bias is None and fitted.common[1] < 0.03 and fitted.left < 0.25:
                 bias, spread = fitted.bias, fitted.bias_spreads
         if bias is None:
@@ -496,7 +499,7 @@ class _Bench:
         return parts.mean(axis=0), parts.std(axis=0) / np.sqrt(len(parts))
 
     def _scale(
-        self, fitted: ScaleFit, constant: ScaleFit, poses: Sequence[Stretch], drifting: bool
+        self, fitted: ScaleFit, constant: ScaleFit, poses: Sequence[Stretch], may_drift: bool
     ) -> float | Array:
         """What to multiply the gyroscope by, if that is known. Of an axis with a scale of its own
         that is so if it does not depend on whether the bias may drift.
@@ -539,7 +542,7 @@ class _Bench:
         off = abs(common - 1)
         light = GREEN if off < max(0.02, 3 * uncertain) else _light(off, 0, 0.05)
         # What a line leaves of a drift looks like a small scale.
-        rival = drifting and light == YELLOW
+        rival = may_drift and light == YELLOW
         if rival or doubtful or uncertain > 0.03 or left > np.radians(3):
             light = UNKNOWN
         self.say(
