@@ -294,7 +294,8 @@ def trim_page(app, pagename, templatename, context, doctree):
     for script in context["script_files"]:
         # Show the text without waiting for a script.
         script.attributes.setdefault("defer", "defer")
-    context["styles"] = [STYLE]
+    # The table of progress is on one page only.
+    context["styles"] = [STYLE, "my-progress.css"] if "my-progress.js" in names else [STYLE]
     if "body" in context:
         context["body"] = lighten(
             move_stills_out(context["body"], Path(app.outdir), context["pathto"])
