@@ -212,7 +212,7 @@ def test_the_still_shows_and_tells(body, moments, time):
             body_fixed_from_dcm(dcm_from_quaternion(figure.run()["reference"]), "zxy"), "zxy"
         )
     )
-    assert f"at least {margins.min():.0f} degrees" in plotted
+    assert f"never less than {margins.min():.0f} degrees" in plotted
     assert figure.still() == MotionFigure(moments=moments, time=time).still()
 
 
@@ -337,7 +337,7 @@ def table(page):
 def test_what_it_says_is_what_python_says(open_figure):
     page, figure = open_figure("motion"), MotionFigure()
     fault = abs(figure.dcm @ figure.dcm.T - np.eye(3)).max()
-    assert f"not orthogonal by {float(f'{fault:.2g}'):g}" in words(page)
+    assert f"departs from orthogonality by {float(f'{fault:.2g}'):g}" in words(page)
     assert f"{np.linalg.norm(figure.dcm, axis=1).max():.3g} long" in words(page)
     assert [row[0] for row in table(page)] == ["Matrix", "Quaternion", "Euler angles"]
     assert table(page)[0][1] == f"{float(f'{fault:.2g}'):g}"
