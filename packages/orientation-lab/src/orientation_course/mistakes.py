@@ -93,8 +93,7 @@ MESSAGES: dict[str, Callable[..., str]] = {
         "of the question."
     ),
     "another axis": lambda question, turn, axis: (
-        f"{_turn(turn).capitalize()} is about the ${axis}$ axis here. It should be about "
-        "another axis."
+        f"You made {_turn(turn)} about the ${axis}$ axis. It should be about another axis."
     ),
     "turn missing": lambda question, turn: f"{_turn(turn).capitalize()} is missing.",
     "one factor only": lambda question, turn: (
