@@ -1288,7 +1288,7 @@ def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
 def test_what_is_missing_is_said(course, tmp_path):
     with pytest.raises(NothingToGrade, match="no notebook with solutions in"):
         grade(course / "submissions", tmp_path / "out", solutions=tmp_path, show=io.StringIO())
-    with pytest.raises(NothingToGrade, match="no notebook with solutions 'turn'"):
+    with pytest.raises(NothingToGrade, match="no notebook with solutions named 'turn'"):
         write_term(tmp_path / "out", assignments={"x": ["turn"]})
         grade(
             course / "submissions",
