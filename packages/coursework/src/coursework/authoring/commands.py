@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import sys
 from collections.abc import Callable, Sequence
@@ -187,11 +188,22 @@ def wheels(folder: Path) -> None:
     print(*(wheel(name, folder) for name in DISTRIBUTIONS), sep="\n")
 
 
+def _writable(page: str | Path) -> str | Path:
+    """Return the path of a page if it can be written, so that an error comes before the work."""
+    place = Path(page).absolute()
+    there = next(path for path in (place, *place.parents) if path.exists())
+    # A page that is there already has to be a file, and another one has to be in a folder.
+    if there.is_dir() == (there == place) or not os.access(there, os.W_OK):
+        raise OSError(f"We cannot write the page {str(page)!r}. Give another path with --page.")
+    return page
+
+
 def trial(name: str, page: str | None) -> None:
     from .trial import trial as show
 
     course = _course()
-    print(f"The page: {show(course, name, page or course.archive.with_name('try.html'))}")
+    place = _writable(page or course.archive.with_name("try.html"))
+    print(f"The page: {show(course, name, place)}")
 
 
 def bank(out: Path, format: str, questions: Sequence[str]) -> None:
@@ -210,7 +222,7 @@ def selftest(only: Sequence[str], page: str | None, sources: Path | None) -> Non
     from .selftest import selftest as try_all
 
     course = _course(sources)
-    place = page or course.archive.with_name("selftest.html")
+    place = _writable(page or course.archive.with_name("selftest.html"))
     faults = try_all(course, place, only)
     print(f"The page: {place}")
     if faults:

@@ -292,7 +292,7 @@ class WarmParent:
         """Try every layer alone, then all that are in force together."""
         self.target["threads in use"] = self.threads_in_use
         with self.file_within() as own:
-            everywhere = self.target_with(own)
+            everywhere: Target = {**self.target, "files": [*self.target["files"], own]}
             layers: dict[str, Layer] = {}
             for layer in LAYERS:
                 why_not = self.why_not(layer, self.target if layer == NAMESPACES else everywhere)
@@ -319,11 +319,6 @@ class WarmParent:
         os.chmod(outside, 0o777)
         yield own
         scratch.remove_folder(outside)
-
-    def target_with(self, file: str) -> Target:
-        target = self.target.copy()
-        target["files"] = [*self.target["files"], file]
-        return target
 
     def not_stopped(self, target: Target) -> list[str]:
         """What the layers in force do not stop together."""
