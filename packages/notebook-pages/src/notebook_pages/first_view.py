@@ -45,12 +45,10 @@ def mark(app, doctree, docname):
         if seen > FIRST_VIEW:
             if isinstance(block, nodes.table):
                 # A table has to be laid out to know its size, a box around it does not.
-                around = nodes.container()
-                block.replace_self(around)
-                around.append(block)
-                around["classes"].append(LATER)
-            else:
-                block["classes"].append(LATER)
+                table, block = block, nodes.container()
+                table.replace_self(block)
+                block.append(table)
+            block["classes"].append(LATER)
         seen += max(LINE, min(LARGEST, len(block.astext())))
 
 

@@ -395,6 +395,16 @@ def take_later(site, styles):
     return as_script(later)
 
 
+def in_ems(text):
+    """Return styles or scripts of the theme with the widths of windows in ems instead of pixels.
+
+    Whoever reads with larger letters has room for fewer columns.
+    """
+    return re.sub(
+        r"(?<=-width:) ?([\d.]+)px(?=\))", lambda width: f"{float(width[1]) / 16}em", text
+    )
+
+
 def bundle_styles(site):
     """Write the styles of all pages as one minified file, without icon fonts and unused rules.
 
@@ -410,10 +420,7 @@ def bundle_styles(site):
         theme = re.sub(
             r'@charset "[^"]*";|/\*.*?\*/|@font-face\{[^}]*\}', "", theme, flags=re.DOTALL
         )
-        # The theme counts columns in pixels. Whoever reads with larger letters has room for fewer.
-        theme = re.sub(
-            r"(?<=-width:) ?([\d.]+)px(?=\))", lambda width: f"{float(width[1]) / 16}em", theme
-        )
+        theme = in_ems(theme)
         own = [static / "book.css", WEBSITE / "live" / "js" / "page.css"]
         scripts = [path for name in PAGE_SCRIPTS if (path := static / name).exists()]
         others = [*own, *scripts, *static.glob("moving/*"), *(WEBSITE / "live" / "js").glob("*.js")]
@@ -449,10 +456,7 @@ def join_scripts(site):
     if not (static / PAGE_SCRIPTS[0]).exists():
         return
     theme = static / PAGE_SCRIPTS[-1]
-    text, count = MEASURES.subn(
-        ".forEach(watchWidth)",
-        theme.read_text("utf8").replace("(min-width: 992px)", "(min-width: 62em)"),
-    )
+    text, count = MEASURES.subn(".forEach(watchWidth)", theme.read_text("utf8"))
     if count != 1:
         raise RuntimeError(
             "The theme's script no longer finds the scrolling boxes with the code "
@@ -468,7 +472,7 @@ def join_scripts(site):
             f"{name}.js" for name in file[:-3].split("-")
         }
         parts = [(static / name).read_text("utf8") for name in PAGE_SCRIPTS if name not in left_out]
-        (static / file).write_text(begin + "\n;".join(parts), "utf8")
+        (static / file).write_text(in_ems(begin + "\n;".join(parts)), "utf8")
     lecture = static / "lecture.js"
     lecture.write_text(as_script(static / "lecture.css") + lecture.read_text("utf8"), "utf8")
     make_small(static, [lecture, *(static / file for file in files)], "error")
