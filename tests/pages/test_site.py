@@ -222,6 +222,12 @@ def test_page_in_dark_and_narrow(browser, site, name):
         assert visit.faults == []
 
 
+def test_widths_of_windows_are_counted_in_letters():
+    """Whoever reads with larger letters has room for fewer columns; scripts have to agree."""
+    for path in [*HTML.glob("_static/*.css"), *HTML.glob("_static/page*.js")]:
+        assert not re.search(r"-width: ?[\d.]+px\)", path.read_text("utf8")), path
+
+
 def test_little_is_awaited_before_the_first_line_is_seen():
     """On a slow telephone the head and its styles determine the first view."""
     styles, weights = {}, {}
