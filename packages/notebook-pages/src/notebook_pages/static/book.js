@@ -40,6 +40,12 @@
   document.addEventListener("click", ({ target }) => target.closest("a[href*='#']") && whole(), true);
 }
 
+// On a busy machine Chromium now and then stays at the top of a page whose address names a place in it.
+addEventListener("load", () => requestAnimationFrame(() => {
+  const arrives = performance.getEntriesByType("navigation")[0]?.type === "navigate";
+  if (arrives && !scrollY) document.getElementById(location.hash.slice(1))?.scrollIntoView();
+}));
+
 // What a reader has moved stands there again after Back and after a reload.
 {
   const figures = () => [...document.querySelectorAll("figure.moving")];
