@@ -120,7 +120,7 @@ def test_signs_with_a_meaning_are_only_signs(odd, format, tmp_path):
 
 def test_what_holds_answers_is_not_written_where_students_look(odd, tmp_path, monkeypatch, capsys):
     for folder in (odd.exercises, odd.sealed, odd.archive.parent):
-        with pytest.raises(AuthorError, match="would hold all answers"):
+        with pytest.raises(AuthorError, match="would contain all answers"):
             bank(odd, folder / "deep" / "bank.xml", "moodle")
     monkeypatch.chdir(PROJECT / "examples" / "plane-statics")
     to_moodle = ["bank", str(tmp_path / "a.xml"), "--format", "moodle", "--questions"]

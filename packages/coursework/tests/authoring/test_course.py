@@ -344,7 +344,7 @@ def test_one_notebook_is_tried_alone(statics, tmp_path, monkeypatch, capsys):
     main(["selftest", "first-steps"])
     text = (course / "build" / "selftest.html").read_text("utf8")
     assert "first-steps/" in text and "moments/" not in text
-    with pytest.raises(SystemExit, match="There is no levers.ipynb"):
+    with pytest.raises(SystemExit, match="has no levers.ipynb; choose from"):
         main(["selftest", "levers"])
 
 
