@@ -46,7 +46,7 @@ def mark(app, doctree, docname):
             if isinstance(block, nodes.table):
                 # A table has to be laid out to know its size, a box around it does not.
                 table, block = block, nodes.container()
-                table.replace_self(block)
+                table.parent.replace(table, block)
                 block.append(table)
             block["classes"].append(LATER)
         seen += max(LINE, min(LARGEST, len(block.astext())))
