@@ -939,7 +939,16 @@ def stop(page, number, code):
 
 
 @pytest.mark.sampled(1)
-@pytest.mark.parametrize("code", [ENDLESS, HUGE])
+@pytest.mark.parametrize(
+    "code",
+    [
+        ENDLESS,
+        HUGE,
+        # What an interrupt raises while an object is deleted is ignored: Python is asked again.
+        "class Slow:\n    def __del__(self):\n        print('begun')\n        while True:\n"
+        "            pass\nslow = Slow()\ndel slow\nwhile True:\n    pass",
+    ],
+)
 def test_stop_keeps_the_names_in_an_isolated_page(shared, code):
     assert shared.page.evaluate("crossOriginIsolated")
     shared.try_code(3, "kept = 'kept'")

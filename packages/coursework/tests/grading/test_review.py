@@ -526,7 +526,8 @@ def test_many_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
         while not page.evaluate("document.activeElement.id === 'keys'"):
             page.keyboard.press("Tab")
         page.keyboard.press("Space")
-        page.keyboard.press("n")
+        with page.expect_navigation():
+            page.keyboard.press("n")
         for number in range(MANY):
             # The page's policy forbids to wait by a script; what is seen on it does as well.
             page.locator(".steps", has_text=re.compile(rf"\b1 of {MANY - number}\b")).wait_for(
@@ -543,7 +544,6 @@ def test_many_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
         page.context.close()
     assert all(url.startswith("http://127.0.0.1:") for url in requests)
     decided = Journal(out).standing().decisions
-    assert len(decided) == MANY
     assert sorted(one.credit for one in decided.values()) == [0.5] * (MANY // 2) + [1] * (MANY // 2)
     assert [one.comment for one in decided.values() if one.comment] == ["Rounded: 4 digits"]
 

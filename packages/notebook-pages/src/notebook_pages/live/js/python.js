@@ -4,8 +4,8 @@
 const SILENCE = 18_000;
 // A run that cannot be interrupted in this time is ended, and everything that it knew with it.
 const PATIENCE = 2500;
-// Python that has heard, and is slow, or holds on to its life, is given this time more.
-const LONGER = 10_000;
+// Python that has heard, but goes on (what an object's deletion raises is ignored), is asked again after this time.
+const LONGER = 5000;
 
 export class Python {
   constructor(place, listener) {
@@ -68,7 +68,7 @@ export class Python {
     this.current = null;
   }
 
-  interrupt() {
+  interrupt(again = true) {
     if (!this.interrupts || !this.current) return this.end("interrupted");
     this.interrupts[0] = 2; // SIGINT
     clearTimeout(this.timer);
@@ -76,7 +76,7 @@ export class Python {
     // Python takes the number away when it hears.
     this.timer = setTimeout(() => {
       if (this.interrupts[0]) giveUp();
-      else this.timer = setTimeout(giveUp, LONGER);
+      else this.timer = setTimeout(() => (again ? this.interrupt(false) : giveUp()), LONGER);
     }, PATIENCE);
   }
 
