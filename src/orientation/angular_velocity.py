@@ -333,9 +333,9 @@ def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Array | Ma
 
     def explain(components: Sequence[float], where: str) -> None:
         raise ValueError(
-            f"vector{where} is {components}, a full rotation, where the rate of a rotation vector "
-            "is not defined. Subtract a full rotation to keep it below half a turn, or use a "
-            "quaternion"
+            f"vector{where} is {components}: its length is a whole number of full rotations, where "
+            "the rate of a rotation vector is not defined. Subtract a full rotation before the "
+            "length reaches it, or use a quaternion"
         )
 
     def formula(

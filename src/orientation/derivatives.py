@@ -217,7 +217,7 @@ class _Numbers(Variable):
             )
             raise ValueError(
                 f"the conversion has no derivative at {arguments[0][0]}{where}: a small change in "
-                "the input makes a large one in the result, as for Euler angles at gimbal lock"
+                "the input makes a large one in the result, as with Euler angles at gimbal lock"
             )
         return derivative.reshape(count, *batch, *shape)
 

@@ -41,8 +41,8 @@ def _explain_length(components: Sequence[float], where: str, name: str = "quater
         )
     elif abs(length - 1) < 0.05:
         cause = (
-            "were its components rounded, or integrated without restoring the length? Then divide "
-            "by it"
+            "were its components rounded, or integrated without being normalised? Then divide by "
+            "the length"
         )
     else:
         cause = (
@@ -314,8 +314,8 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Arr
             if _length_excess(NUMBERS, *part) > TOLERANCE:
                 _explain_length(part, where, name)
         raise ValueError(
-            f"the orientations{where} are half a turn apart, so the two ways "
-            "round are equally long. Interpolate through a third orientation"
+            f"the orientations{where} are half a turn apart, so the two rotations "
+            "between them are equally long. Interpolate through a third orientation"
         )
 
     def formula(

@@ -25,7 +25,8 @@ def search(page, words):
 
 
 @pytest.mark.parametrize(
-    ("symbol", "reply"), [("∑", "Nothing in this book. Try a word"), ("θ", "Enter opens the first")]
+    ("symbol", "reply"),
+    [("∑", "Nothing found in this book. Try a different word"), ("θ", "Enter opens the first")],
 )
 def test_a_symbol_brings_places_or_what_to_try(page, symbol, reply):
     search(page, symbol)

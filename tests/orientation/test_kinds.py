@@ -556,7 +556,7 @@ def test_sequences_that_are_none(call):
             call(sequence)
     for sequence in ("zx", "", "zxyz", "abc", "313", 313, None, ("z", "x", "y"), ["z", "x", "y"]):
         with pytest.raises(
-            ValueError, match="is not a sequence of Euler angles: the twelve are zxz, "
+            ValueError, match="is not a sequence of Euler angles: the twelve sequences are zxz, "
         ):
             call(sequence)
 

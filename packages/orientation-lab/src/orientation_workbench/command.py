@@ -107,9 +107,9 @@ def _add_recording(commands):
     parser = commands.add_parser(
         "recording",
         help="identify the columns, units and axes of an IMU recording",
-        description="Identify the columns of a recording, their units, axes, signs and errors and "
-        "the convention of any orientation in it. Then run a filter, and test whether its "
-        "errors are as small as it claims.",
+        description="Identify the columns of a recording and their units, axes, signs and errors, "
+        "and the convention of any orientation in it. Then run a filter, and test whether its "
+        "errors are as small as the filter claims.",
         epilog="Exit codes: 0 if the file was examined, even if faults were found; 3 if it "
         "cannot be read.",
     )
@@ -117,8 +117,8 @@ def _add_recording(commands):
         "files",
         nargs="+",
         metavar="FILE",
-        help="a table of numbers, - for standard input, or a zip or folder of tables; several "
-        "files must share a clock",
+        help="a table of numbers, - for standard input, or a zip file or folder of tables; the "
+        "times in several files must come from the same clock",
     )
     parser.add_argument("--rate", type=float, help="samples per second, if the file has no times")
     parser.add_argument(
@@ -150,7 +150,7 @@ def _add_recording(commands):
         help="form of the orientation in --csv (default: wxyz)",
     )
     parser.add_argument(
-        "--quick", action="store_true", help="skip the filter, which takes the longest"
+        "--quick", action="store_true", help="skip the filter, which is the slowest step"
     )
     # Explaining needs no bench, so only this command loads it.
     parser.set_defaults(
@@ -181,8 +181,8 @@ def _declared(words):
     for word in words:
         if word not in groups:
             raise ValueError(
-                f"{word!r} is not a kind of description ({', '.join(COUNTS)}), a convention or "
-                f"a direction ({', '.join(WAYS)})"
+                f"{word!r} is unknown: give a kind of description ({', '.join(COUNTS)}), a "
+                f"convention such as 'zyx' or 'degrees', or a direction ({', '.join(WAYS)})"
             )
     return {groups[word]: word for word in words}
 
@@ -190,7 +190,7 @@ def _declared(words):
 def _explain(chosen):
     try:
         if not chosen.noise >= 0:
-            raise ValueError(f"--noise is {chosen.noise:g}: give at least 0 degrees")
+            raise ValueError(f"--noise is {chosen.noise:g}: it must be at least 0 degrees")
         texts = [_given(chosen.first), _given(chosen.second)]
         declared = [_declared(words) for words in (chosen.first_is, chosen.second_is)]
         found = explain(

@@ -545,10 +545,10 @@ def test_the_command(tmp_path, capsys):
         (["1 0 0 0"], "required: second"),
         (["1 0 0 0", "1 0 0 0\n0 1 0 0"], "the first side has 1 pose and the second 2:"),
         (["1 0 0 0", "1 0 0 0", "--noise", "much"], "--noise"),
-        (["1 0 0 0", "1 0 0 0", "--noise", "-3"], "--noise is -3: give at least 0 degrees"),
-        (["1 0 0 0", "1 0 0 0", "--noise", "nan"], "--noise is nan: give at least 0 degrees"),
+        (["1 0 0 0", "1 0 0 0", "--noise", "-3"], "--noise is -3: it must be at least 0 degrees"),
+        (["1 0 0 0", "1 0 0 0", "--noise", "nan"], "--noise is nan: it must be at least 0 degrees"),
         (["1 0 0 0", "1 0 0 0", "--first", "Maya"], "unknown program"),
-        (["1 0 0 0", "1 0 0 0", "--first-is", "sideways"], "not a kind of description"),
+        (["1 0 0 0", "1 0 0 0", "--first-is", "sideways"], "give a kind of description"),
     ],
 )
 def test_a_command_that_is_misspelt_is_bad_input(arguments, said, capsys):

@@ -71,7 +71,7 @@ def said_of_unrelated(count, seed):
             texts = [printed(turn[:1], form) for turn, form in zip(turns, forms, strict=True)]
             score[explain(*texts, noise=np.radians(rng.uniform(0.2, 2))).verdict] += 1
         except ValueError:
-            score["too small to judge by"] += 1
+            score["too small to judge"] += 1
     return score
 
 

@@ -15,7 +15,7 @@
         const reached = names.filter((name) => all[cell.dataset.kind].includes(name));
         if (names.length) cell.textContent = `${reached.length} of ${names.length}`; // else there is nothing to do
         if (cell.dataset.kind === "recap" && reached.length)
-          cell.textContent += `, ${reached.filter((name) => answers[name].rightAtFirst).length} right at once`;
+          cell.textContent += `, ${reached.filter((name) => answers[name].rightAtFirst).length} right on the first try`;
         cell.classList.toggle("whole", names.length > 0 && reached.length === names.length);
       }
       const asked = [...row.querySelectorAll("td")].flatMap((cell) => cell.dataset.names.split(" "));

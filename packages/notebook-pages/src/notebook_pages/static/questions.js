@@ -228,7 +228,7 @@
     const tell = () => {
       const answers = names.map((name) => progress.here().answers[name]).filter(Boolean);
       const right = answers.filter((answer) => answer.rightAtFirst).length;
-      line.textContent = answers.length ? `${answers.length} of ${names.length} answered, ${right} right at the first try.` : "";
+      line.textContent = answers.length ? `${answers.length} of ${names.length} answered, ${right} right on the first try.` : "";
     };
     document.addEventListener("progress", tell);
     tell();

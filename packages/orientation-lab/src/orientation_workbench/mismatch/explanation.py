@@ -133,7 +133,7 @@ def explain(
     if counts[0] != counts[1]:
         raise ValueError(
             f"the first side has {counts[0]} pose{'s' * (counts[0] != 1)} and the second "
-            f"{counts[1]}: they must be the same poses, in order"
+            f"{counts[1]}: give the same poses on both sides, in the same order"
         )
     one, other = (
         search.side(poses.kinds, poses.numbers, poses.half, declared, noise)
@@ -187,8 +187,7 @@ def _normalised(sides):
         worst = float(lengths[np.argmax(np.abs(lengths - 1))])
         if poses.kinds == ("quaternion",) and abs(worst - 1) > SLACK + 2 * poses.half:
             remarks.append(
-                f"A quaternion of the {name} side has length {worst:.6g}: it was normalised to "
-                "length 1."
+                f"A quaternion on the {name} side has length {worst:.6g}, not 1. We normalised it."
             )
     return tuple(remarks)
 
@@ -347,7 +346,7 @@ def _question(names, best):
         for what in ("order", "way", TURNS, "sequence")
     )
     asked = {
-        "Did angles or a quaternion pass from one program to the other?": any(
+        "Which did one program pass to the other, angles or a quaternion?": any(
             "intermediate" in name.faults[0] for name in names
         ),
         "Does the scalar part of the quaternions come first or last?": order,
@@ -502,8 +501,8 @@ def sentences(explanation):
         )
         if explanation.poses < 3:
             yield (
-                "Only three or more poses can show whether an instrument is mounted askew: paste "
-                "them."
+                "It takes at least three poses to show whether an instrument is mounted askew: "
+                "paste more poses."
             )
         if explanation.mirrored:
             yield (

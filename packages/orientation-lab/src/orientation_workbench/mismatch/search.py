@@ -127,7 +127,8 @@ def side(kinds, numbers, half, declared, noise):
     ):
         raise ValueError(
             f"the tolerance is {math.degrees(noise):.3g} degrees, but the numbers describe a "
-            f"rotation of only {math.degrees(moves.min()):.3g} degrees: too small to judge by"
+            f"rotation of only {math.degrees(moves.min()):.3g} degrees, too small to judge. Give "
+            "larger rotations, or a smaller tolerance"
         )
     return Side([each for each, fits in zip(readings, some) if fits], dcms[some], doubts[some])
 

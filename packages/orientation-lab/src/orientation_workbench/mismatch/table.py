@@ -191,29 +191,29 @@ BODY_AXES = _by_axes(
         "x -y -z": "y and z of the body reversed (FRD and FLU; OpenCV's camera and OpenGL's)",
         "-x -y z": "x and y of the body reversed (OpenCV's camera and PyTorch3D's)",
         "-x y -z": "x and z of the body reversed",
-        "-y -z x": "the body's axes forward, left, up against those of a camera, right, "
+        "-y -z x": "the body's axes forward, left, up, versus those of a camera, right, "
         "down, forward",
-        "z -x -y": "the camera's axes right, down, forward against those of a body, "
+        "z -x -y": "the camera's axes right, down, forward, versus those of a body, "
         "forward, left, up",
-        "x z -y": "the body's y up against z up",
-        "x -z y": "the body's z up against y up",
-        "y z x": "the body's axes moved on by one place",
-        "z x y": "the body's axes moved on by two places",
-        "-y x z": "the camera's axes down, right, back (LLFF) against right, up, back",
+        "x z -y": "the body's y up versus z up",
+        "x -z y": "the body's z up versus y up",
+        "y z x": "the body's axes cyclically shifted by one place",
+        "z x y": "the body's axes cyclically shifted by two places",
+        "-y x z": "the camera's axes down, right, back (LLFF) versus right, up, back",
     }
 )
 WORLD_AXES = _by_axes(
     {
-        "y x -z": "north, east, down (NED) against east, north, up (ENU)",
+        "y x -z": "north, east, down (NED) versus east, north, up (ENU)",
         "x -y -z": "y and z of the world reversed (NED and NWU)",
         "-x -y z": "x and y of the world reversed",
         "-x y -z": "x and z of the world reversed",
-        "x z -y": "the world's y up against z up",
-        "x -z y": "the world's z up against y up",
-        "y z x": "the world's axes moved on by one place",
-        "z x y": "the world's axes moved on by two places",
-        "y -x z": "north, west, up (NWU) against east, north, up (ENU)",
-        "-y x z": "east, north, up (ENU) against north, west, up (NWU)",
+        "x z -y": "the world's y up versus z up",
+        "x -z y": "the world's z up versus y up",
+        "y z x": "the world's axes cyclically shifted by one place",
+        "z x y": "the world's axes cyclically shifted by two places",
+        "y -x z": "north, west, up (NWU) versus east, north, up (ENU)",
+        "-y x z": "east, north, up (ENU) versus north, west, up (NWU)",
     }
 )
 

@@ -437,12 +437,12 @@ def _kinds(numbers, kind, doubt, name):
         _demand_orthogonal(numbers, doubt, name)
     elif kinds == ("quaternion",) and not _all_unit(numbers, max(doubt, 0.01)):
         worst = max(np.linalg.norm(numbers, axis=1), key=lambda size: abs(size - 1))
-        raise ValueError(f"a quaternion of the {name} side has length {worst:.6g}, not 1")
+        raise ValueError(f"a quaternion on the {name} side has length {worst:.6g}, not 1")
     elif kinds == ("axis and angle",):
         if not any(_all_unit(axes, doubt) for axes in (numbers[:, :3], numbers[:, 1:])):
             size = np.linalg.norm(numbers[0])
             raise ValueError(
-                f"the four numbers of the {name} side are neither a quaternion (their length is "
+                f"the four numbers on the {name} side are neither a quaternion (their length is "
                 f"{size:.6g}, not 1) nor an axis and its angle (neither the first three nor the "
                 "last three have length 1)"
             )
@@ -466,4 +466,4 @@ def _demand_orthogonal(numbers, doubt, name):
             else f"the dot product of rows {row + 1} and {other + 1} is "
             f"{products[row, other]:.6g}, not 0"
         )
-        raise ValueError(f"matrix {which} of the {name} side is not a rotation: {what}")
+        raise ValueError(f"matrix {which} on the {name} side is not a rotation: {what}")

@@ -169,7 +169,7 @@ class _Bench:
                 UNKNOWN,
                 f"{self.content.clock}: the rate is not known",
                 {},
-                "Give it: --rate 100.",
+                "Give the rate, such as --rate 100.",
             )
         steps = np.diff(time)
         step = float(np.median(steps))
@@ -194,8 +194,8 @@ class _Bench:
         long = steps > 2.5 * step
         lost = float(steps[long].sum() / time[-1]) if time[-1] > 0 else 0.0
         words = (
-            f"{number_of(int(long.sum()), 'gap')}, the longest of {steps.max():.3g} s, {lost:.1%} "
-            "of the time"
+            f"{number_of(int(long.sum()), 'gap')}, the longest of {steps.max():.3g} s; together "
+            f"{lost:.1%} of the time"
             if long.any()
             else "none"
         )
@@ -216,7 +216,7 @@ class _Bench:
         self.say(
             "repeated rows",
             _light(same, 0.005, 0.05),
-            f"{same:.1%} of the rows repeat the one before",
+            f"{same:.1%} of the rows repeat the previous row",
             {"share": round(same, 4)},
             "The instrument samples less often than the file claims, or rows were repeated to fill "
             "gaps.",
@@ -269,7 +269,7 @@ class _Bench:
                 self.say(
                     "unit of the gyroscope",
                     RED,
-                    f"its rotations agree with the other sensors only in {names[unit]}; its "
+                    f"its rotations agree with the other sensors only in {names[unit]}, but its "
                     f"heading says {said}",
                     {"scale": round(fit.scale, 5)},
                     f"Read it as {names[unit]}.",
@@ -282,18 +282,20 @@ class _Bench:
             return self.say(
                 "unit of the gyroscope",
                 UNKNOWN,
-                "no heading gives it, and its rotations do not determine it",
+                "no heading gives the unit, and the rotations do not determine it",
                 {},
-                "Give it: --columns 'gyroscope=2-4:deg/s', or rotate it about all its axes.",
+                "Give the unit, such as --columns 'gyroscope=2-4:deg/s', or rotate the instrument "
+                "about all its axes.",
             )
         else:
             unit = DEGREES[said]
             self.say(
                 "unit of the gyroscope",
                 UNKNOWN,
-                f"{names[unit]} by its heading, which its rotations neither confirm nor refute",
+                f"{names[unit]} according to its heading, which its rotations neither confirm nor "
+                "refute",
                 {},
-                "Rotate it about all its axes.",
+                "Rotate the instrument about all its axes.",
             )
         self.facts["unit of the gyroscope"] = unit
         most = float(np.degrees(np.percentile(np.linalg.norm(raw, axis=1), 95) * unit))
@@ -304,7 +306,7 @@ class _Bench:
                 f"one value in twenty is above {most:.2g} °/s: nothing held or flown "
                 "rotates that fast",
                 {},
-                "Is it a different column, or a different unit?",
+                "Are these the wrong columns, or is the unit wrong?",
             )
         self._axes(fits, raw * unit)
 
@@ -378,7 +380,10 @@ class _Bench:
                 best = plain
         elif field is not None and field.margin > BELIEVED and field.shares.argmin() in near:
             best = field.best
-            words += f"; gravity alone leaves {len(near)} assignments, and the field decides"
+            words += (
+                f"; gravity alone leaves {len(near)} assignments, and the magnetic field decides "
+                "between them"
+            )
         if best is not None:
             if not np.allclose(best, plain):
                 mirrored = "; one of the two is left-handed" * bool(np.linalg.det(best) < 0)
@@ -397,7 +402,8 @@ class _Bench:
             self.say(
                 "axes of the gyroscope",
                 UNKNOWN,
-                "nothing determines them: it rotates too little, or pushes hide gravity"
+                "nothing determines them: the instrument rotates too little, or its acceleration "
+                "hides gravity"
                 if fit is None or len(ways) > FEW
                 else f"{len(ways)} assignments fit nearly as well: {'; '.join(ways)}",
                 {} if fit is None else {"margin": round(fit.margin, 2)},
@@ -436,7 +442,8 @@ class _Bench:
                 f"it is never still. From {first:.1f} to {last:.1f} s it is held: it wavers by "
                 f"{np.degrees(calmest.deviation):.1f} °/s, slowly, as a hand does",
                 {"deviation (°/s)": round(float(np.degrees(calmest.deviation)), 2)},
-                "A mean over that time is motion, not bias. Lay it down for a few seconds.",
+                "A mean over that time would be motion, not bias. Lay the instrument down for a "
+                "few seconds.",
             )
         else:
             self.say(
@@ -473,7 +480,7 @@ class _Bench:
             self.say(
                 "bias of the gyroscope",
                 UNKNOWN,
-                "it is never still, and its rotations do not determine it",
+                "the instrument is never still, and its rotations do not determine the bias",
                 {},
                 "Lay it down for a few seconds.",
             )
@@ -505,7 +512,7 @@ class _Bench:
         that is so if it does not depend on whether the bias may drift.
         """
         (common, uncertain), left = fitted.common, fitted.left
-        carries = f"its rotations carry gravity through {number_of(len(poses), 'pose')}"
+        carries = f"its rotations track gravity through {number_of(len(poses), 'pose')}"
         self.facts["scale of the gyroscope"] = common
         if self.counts:
             self.facts["unit of the gyroscope"] *= common
@@ -513,7 +520,7 @@ class _Bench:
             self.say(
                 "unit of the gyroscope",
                 RED if unit_of_rates(self.content.groups["gyroscope"].names) else YELLOW,
-                f"counts, whatever the heading says: one count is {np.degrees(unit):.4g} "
+                f"counts, whatever the heading says. One count is {np.degrees(unit):.4g} "
                 f"± {np.degrees(uncertain * unit):.1g} °/s, because then {carries}",
                 {"rad/s": unit},
                 f"Multiply by {np.degrees(unit):.4g} to get °/s.",
@@ -628,13 +635,16 @@ class _Bench:
                 f". As the temperature goes from {warmth:.0f} to {warmer:.0f} °C, it changes by "
                 f"{np.degrees(slope):.2f} °/s per degree"
             )
-            advice = "subtract a straight-line fit against temperature, or let it warm up first."
+            advice = (
+                "subtract a straight-line fit against temperature, or let the instrument warm up "
+                "first."
+            )
         self.say(
             "drift of the bias",
             RED,
             words,
             {"°/s": np.degrees(biases).round(3).tolist()},
-            f"Subtracting a constant does not correct that: {advice}",
+            f"Subtracting a constant does not correct this: {advice}",
         )
 
     def _noise(self, longest: Stretch) -> None:
@@ -648,15 +658,15 @@ class _Bench:
             return self.say(
                 "noise of the gyroscope",
                 UNKNOWN,
-                f"it lies still for only {seconds:.0f} s, too short to separate white noise from "
-                "the rest",
+                f"it lies still for only {seconds:.0f} s, which is too short to separate white "
+                "noise from other noise",
                 {},
-                "Let it lie for a few minutes.",
+                "Let it lie still for a few minutes.",
             )
         words = f"angle random walk {walk:.2g} °/√s, {60 * walk:.2g} °/√h"
         evidence = {"°/√s": noise.angle_random_walk.round(4).tolist()}
         if np.isnan(noise.bias_instability).all():
-            words += f"; {seconds:.0f} s is too short to measure how steady its bias is"
+            words += f"; {seconds:.0f} s is too short to measure its bias instability"
         else:
             worst = int(np.nanargmax(noise.bias_instability))
             words += (
@@ -677,12 +687,15 @@ class _Bench:
         unit, gravity, off = unit_of_gravity(np.concatenate(quiet))
         said = unit_in_brackets(self.content.groups["accelerometer"].names[0])
         wrong = bool(said) and abs(np.log(GRAVITY[said] / gravity)) > 0.2
-        light, why = YELLOW if unit.startswith("counts") else GREEN, "by gravity's length"
+        light, why = YELLOW if unit.startswith("counts") else GREEN, "judging by gravity"
         if wrong and not self.still and self._pushed():
             unit, gravity, light = said, GRAVITY[said], UNKNOWN
-            why = "by its heading; it is never still, and pushes hide gravity's length"
+            why = (
+                "according to its heading; it is never still, and its acceleration hides the "
+                "strength of gravity"
+            )
         elif wrong:
-            light, why = RED, f"by gravity's length; its heading says {said}"
+            light, why = RED, f"judging by gravity, but its heading says {said}"
         self.facts["gravity"], self.forces = gravity, raw / gravity
         advice = {RED: f"Read it as {unit}.", UNKNOWN: "Lay it down for a few seconds."}
         self.say(
@@ -720,7 +733,8 @@ class _Bench:
             light, advice, words = (
                 UNKNOWN,
                 "Lay it down in nine poses, each tilted a different way.",
-                f"{words}. No offset or scale explains that; the hand that holds it may",
+                f"{words}. No offset or scale explains that; the hand that holds it may be the "
+                "cause",
             )
         elif light == YELLOW:
             words += (
@@ -757,7 +771,7 @@ class _Bench:
         before, dips = self._unevenness(self.field), self._dips(raw)
         uneven, useless, about = before, fit is None, "offset of the magnetometer"
         if fit is None:
-            words = f"neither rotations nor lengths determine offset and shape{known}"
+            words = f"neither rotations nor lengths determine the offset and the shape{known}"
             advice = "Rotate it slowly through all directions, in a figure of eight."
             self.say(about, UNKNOWN, words, {}, advice)
         else:
@@ -779,16 +793,16 @@ class _Bench:
                     "correction that fits best"
                 )
                 advice = "Rotate it slowly through all directions, far from iron."
-                self.say(about, UNKNOWN, f"{words}: it is not applied", {}, advice)
+                self.say(about, UNKNOWN, f"{words}, so it is not applied", {}, advice)
         # The length is the field's alone; a dip may also vary with a wrong accelerometer.
         worst = max(uneven, dips[1] / 100 if dips else 0)
         light = YELLOW if useless and worst > 0.06 else _light(worst, 0.06, 0.12)
         words = f"its length varies by {uneven:.0%}" + (
-            f", its dip by {dips[1]:.0f}° about {dips[0]:.0f}°" if dips else ""
+            f", and its dip by {dips[1]:.0f}° around {dips[0]:.0f}°" if dips else ""
         )
         evidence = {"length varied by": round(before, 3), "corrected by": round(uneven, 3)}
         cause = (
-            "The cause is iron that moves with it, or iron that it passed, and the "
+            "The cause is iron that moves with the instrument, or iron that it passed, and the "
             "rotations do not show which. Do not use the field, or record a figure of eight far "
             "from iron."
             if useless
@@ -928,7 +942,7 @@ class _Bench:
             f"delay of the {kind}",
             RED,
             f"its values fit the rotations of the {'others' if len(seen) > 1 else 'gyroscope'} "
-            f"best {1000 * abs(lag) * step:.0f} ms "
+            f"best when shifted {1000 * abs(lag) * step:.0f} ms "
             f"{'earlier' if lag > 0 else 'later'}: it is {'late' if lag > 0 else 'early'}",
             {"seconds": round(lag * step, 3)},
             f"First of all, shift its times {'back' if lag > 0 else 'forward'} by that much.",
@@ -984,9 +998,9 @@ class _Bench:
         level = [k for k in level if leans[k][1].endswith("z")] or level
         reading, (lean, axis) = equal[level[0]], leans[level[0]]
         words = f"{reading.order}; " + (
-            "the ground from the body, the conjugate of this book's"
+            "ground from body, the inverse of this book's convention"
             if reading.conjugate
-            else "the body from the ground, as in this book"
+            else "body from ground, as in this book"
         )
         if not np.allclose(reading.mounting, np.eye(3)):
             words += f"; its body's x, y, z are the gyroscope's {written(reading.mounting)}"
@@ -1019,7 +1033,7 @@ class _Bench:
             if axis.startswith("-"):
                 advice += (
                     "Either the ground's axis points down, or the accelerometer's signs are "
-                    "reversed, as in iPhones: then change them."
+                    "reversed, as in iPhones. In that case, change them."
                 )
             words = f"up is {lean:.1f}° away from the ground's {axis} axis"
             light = YELLOW if advice else GREEN
@@ -1043,10 +1057,10 @@ class _Bench:
 
     def filter(self, progress: Callable[[float], None] | None) -> None:
         if self.time[-1] - self.time[0] < 1 or len(self.time) < 20:
-            words = f"{len(self.time)} samples in {self.time[-1]:.2g} s are too few to judge it"
+            words = f"{len(self.time)} samples in {self.time[-1]:.2g} s are not enough to judge it"
             return self.say("filter", UNKNOWN, words)
         if self.rates is None or self.forces is None or self.content.counted:
-            words = "it needs a gyroscope of known unit, an accelerometer, and a clock"
+            words = "it needs a gyroscope whose unit is known, an accelerometer, and a clock"
             return self.say("filter", UNKNOWN, words)
         trouble = self._trouble()
         field = None if "field" in trouble else self.field
@@ -1090,7 +1104,7 @@ class _Bench:
         ]
         if heading is not None and (doubtful or max(heading) > 20):
             light = YELLOW if light == GREEN else light
-            advice += " Do not use its heading, which may be wrong by up to half a turn: " + (
+            advice += " Do not use its heading, which may be wrong by up to 180°: " + (
                 f"first settle {', '.join(doubtful)}." if doubtful else "it is too uncertain."
             )
         evidence = {

@@ -129,7 +129,9 @@ def read_content(
         If the file cannot be read, or holds no instrument.
     """
     if rate is not None and not 0 < rate < np.inf:
-        raise RecordingError(f"the rate is {rate:g}: give samples per second, more than 0")
+        raise RecordingError(
+            f"the rate is {rate:g}, not a positive, finite number of samples per second"
+        )
     tables = [_told(table, columns) for table in read_tables(source, name)]
     by_table: list[tuple[str, list[Group]]] = []
     clocks: list[tuple[str, bool]] = []
@@ -214,13 +216,13 @@ def _told(table: Table, columns: str) -> Table:
         first, last = (int(told[2]), int(told[3] or told[2])) if told else (0, 0)
         if not told or not 1 <= first <= last <= len(names):
             raise RecordingError(
-                f"{entry!r} does not fit the {len(names)} columns: write an entry such as "
-                "gyroscope=2-4 or gyroscope=2-4:rad/s"
+                f"{entry!r} does not describe columns from 1 to {len(names)}: write an entry such "
+                "as gyroscope=2-4 or gyroscope=2-4:rad/s"
             )
         if told[4] and not re.fullmatch(_UNITS_TOLD.get(told[1], ".*"), told[4], re.IGNORECASE):
             raise RecordingError(
-                f"{told[4]!r} is not a unit of the {told[1]}: write s or ms, rad/s or deg/s, m/s² "
-                "or g"
+                f"{told[4]!r} is not a unit of the {told[1]}: write s or ms for a time, rad/s or "
+                "deg/s for a gyroscope, m/s² or g for an accelerometer"
             )
         axes = {
             1: [""],
@@ -229,7 +231,10 @@ def _told(table: Table, columns: str) -> Table:
             4: ["_w", "_x", "_y", "_z"],
         }.get(last - first + 1)
         if axes is None:
-            raise RecordingError(f"{entry!r} has {last - first + 1} columns; a vector has three")
+            raise RecordingError(
+                f"{entry!r} has {last - first + 1} columns, but a time has one or two, a vector "
+                "three and a quaternion four"
+            )
         for column, axis in zip(range(first - 1, last), axes, strict=True):
             names[column] = told[1] + axis + (f" ({told[4]})" if told[4] else "")
     return table._replace(columns=names) if columns else table
@@ -302,14 +307,14 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
     column, values = table.columns[k], table.values[:, k]
     step = np.median(np.diff(values)[np.diff(values) > 0])
     if re.search(COUNTS, column.lower()) or (step == 1 and _unit(column) != "ms"):
-        return k, values, f"{column}, which only counts", True
+        return k, values, f"{column}, which only counts samples", True
     named = UNITS_OF_TIME.get(_unit(column))
     by_size = next((scale for scale in (1.0, 1e-3, 1e-6, 1e-9) if 2e-4 < step * scale <= 0.5), None)
     scale = named if named and 1e-5 < step * named < 5 else _by_rate(table, step) or by_size
     if scale is None:
         raise RecordingError(
-            f"{table.name}: column {column} looks like a time, but its steps of {step:g} fit no "
-            "unit"
+            f"{table.name}: column {column} looks like a time, but its steps of {step:g} do not "
+            f"fit any unit. Give the unit, such as --columns time={k + 1}:ms"
         )
     units = [unit for unit, size in UNITS_OF_TIME.items() if size == scale]
     words = f"{column}, in {units[0] if units else f'{scale:g} s'}"

@@ -209,8 +209,8 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
     if examined.rates is not None:
         still = sum(stretch.still for stretch in examined.still)
         words = (
-            f"How fast it rotates. Shaded: the stretches during which it lies still ({still}) and "
-            f"in which it is held ({len(examined.still) - still})."
+            "How fast the instrument rotates. Shaded: the stretches in which it lies still "
+            f"({still}) and those in which it is held ({len(examined.still) - still})."
         )
         with drawing(2.6, words, "time (s)", "rate (°/s)") as axes:
             rates = np.degrees(np.linalg.norm(examined.rates[few], axis=1))
@@ -223,7 +223,7 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
         noise = noise_of(times, deviations)
         words = (
             "Allan deviation of the gyroscope in its longest still stretch. "
-            "Where it halves as the time quadruples, it is white noise, and the value "
+            "Where it halves as the averaging time quadruples, the noise is white, and the value "
             "of that line at one second is the angle random walk. The lowest point is the bias "
             "instability, if the stretch is long enough to show it."
         )

@@ -178,7 +178,8 @@ def _unpacked(content: bytes, name: str) -> list[Table]:
     elif b"\0" in content[:4096]:
         raise RecordingError(
             f"{name} is not a text file: byte {content.index(0) + 1} is zero. "
-            "Many loggers use their own format: first export it as CSV with the maker's program."
+            "Many loggers use their own format: first export the file as CSV with the "
+            "manufacturer's program."
         )
     else:
         try:
@@ -401,7 +402,7 @@ def _table(
     told = "; ".join(broken[:3]) + (f"; and {len(broken) - 3} more" if len(broken) > 3 else "")
     if len(broken) > max(2, MOST_BROKEN * (len(kept) + len(broken))):
         raise BrokenTable(
-            f"{name}: {len(broken)} of {len(kept) + len(broken)} rows do not fit. {told}"
+            f"{name}: {len(broken)} of {len(kept) + len(broken)} rows cannot be read: {told}"
         )
     remarks = [f"left out {number_of(len(broken), 'row')}: {told}"] if broken else []
     head = "\n".join(",".join(row) for _, row in there[:begin])

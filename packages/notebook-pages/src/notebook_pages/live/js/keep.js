@@ -57,9 +57,9 @@ export async function keep(tools) {
     };
   }
   actions["Not now"] = () => tools.say("Nothing was changed.");
-  tools.ask(isNewest ? "The book is stored in this browser, for reading without a network."
+  tools.ask(isNewest ? "The book is stored in this browser, so you can read it without a network."
     : there ? "The copy stored here is from a different edition. Update it?"
-      : "Store the book in this browser, for reading without a network? When the pages change, it downloads the changes.", actions);
+      : "Store the book in this browser, to read it without a network? The browser then downloads whatever changes in the pages.", actions);
 }
 
 // The sections of a page by their headings, without the sections within them.

@@ -66,7 +66,7 @@
 
   // Why this page can run no code and keep nothing, if so: its origin is no place that its own files share.
   const apart = self.origin !== "null" ? "" : location.protocol === "file:"
-    ? "A page opened from disk cannot run code. In the folder of the book run: python serve.py, and open the address that it prints."
+    ? "A page opened from disk cannot run code. In the folder of the book, run python serve.py and open the address that it prints."
     : "The page around this one blocks its files (its frame has a sandbox without allow-same-origin), so no code runs here. Open this page in its own tab.";
   document.querySelector("a.open-notebook")?.addEventListener("click", (event) => {
     if (!apart) return;
@@ -264,7 +264,7 @@
       const now = `${name ? `The numbers are those of ${name}` : "You have the default numbers"} now`;
       let said = "";
       if (shown[number]) said = name && `Run this cell to get the numbers of ${name}.`;
-      else if (!known) said = whose !== undefined && `${now}: run this cell once your answer is for these.`;
+      else if (!known) said = whose !== undefined && `${now}: run this cell once your answer uses these numbers.`;
       else if (known.whose !== undefined) said = `${known.outcome === "correct" ? "✓ Right with" : "Tried with"} ${numbers}, and this is remembered. ${now}: run the question and this cell to see how you stand.`;
       else if (known.outcome === "correct") said = "✓ Correct, in an earlier check. Run this cell to see the reply to the answer above it.";
       else said = `You have tried this one before. ${run}`;

@@ -100,7 +100,7 @@ export async function load(data, originals) {
   if (!kept) return "This browser has no room for everything in the notebook, or stores nothing, so not all of it was loaded.";
   const more = codes.length - originals.length;
   const own = more > 0 ? ` ${count(more, "cell")} of yours that the page does not have ${more === 1 ? "stays" : "stay"} in the file.` : "";
-  return `${changed ? `${count(changed, "cell")} changed: what stood in ${changed === 1 ? "it" : "them"} before is kept below each cell.` : "Nothing differs."}${own}`;
+  return `${changed ? `${count(changed, "cell")} changed: the earlier content is kept below each cell.` : "Nothing differs."}${own}`;
 }
 
 // --- all answers of the book ----------------------------------------------------------------------

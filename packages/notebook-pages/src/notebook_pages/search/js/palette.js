@@ -52,7 +52,7 @@ function attach(form) {
     const found = begun ? [] : numbers.length ? numbers : find(query).map(shown);
     list.replaceChildren(...found);
     count.textContent = begun ? "" : found.length
-      ? `${found.length} ${found.length === 1 ? "place" : "places"}; Enter opens the first` : "Nothing in this book. Try a word for it, or another word.";
+      ? `${found.length} ${found.length === 1 ? "place" : "places"}; Enter opens the first` : "Nothing found in this book. Try a different word. For a symbol, type its name.";
   };
   fields.push(answer);
   field.addEventListener("input", answer);

@@ -232,10 +232,10 @@ function kindsOf(numbers, kind, doubt, name) {
   if (kinds[0] === 'matrix') demandOrthogonal(numbers, doubt, name);
   if (kinds[0] === 'quaternion' && !isUnit(numbers, Math.max(doubt, 0.01))) {
     const worst = numbers.map(length).reduce((worst, size) => (Math.abs(size - 1) > Math.abs(worst - 1) ? size : worst));
-    throw new Error(`a quaternion of the ${name} side has length ${short(worst)}, not 1`);
+    throw new Error(`a quaternion on the ${name} side has length ${short(worst)}, not 1`);
   }
   if (kinds[0] === 'axis and angle' && ![[0, 3], [1, 4]].some(([from, to]) => isUnit(numbers.map((pose) => pose.slice(from, to)), doubt))) {
-    throw new Error(`the four numbers of the ${name} side are neither a quaternion (their length is ${short(length(numbers[0]))}, not 1) nor `
+    throw new Error(`the four numbers on the ${name} side are neither a quaternion (their length is ${short(length(numbers[0]))}, not 1) nor `
       + 'an axis and its angle (neither the first three nor the last three have length 1)');
   }
   return kinds;
@@ -248,7 +248,7 @@ function demandOrthogonal(numbers, doubt, name) {
     const row = Math.floor(worst / 3), other = worst % 3;
     const what = row === other ? `row ${row + 1} has length ${short(length(dcm[row]))}, not 1`
       : `the dot product of rows ${row + 1} and ${other + 1} is ${short(dot(dcm[row], dcm[other]))}, not 0`;
-    throw new Error(`matrix ${which + 1} of the ${name} side is not a rotation: ${what}`);
+    throw new Error(`matrix ${which + 1} on the ${name} side is not a rotation: ${what}`);
   });
 }
 
@@ -440,7 +440,7 @@ function sideOf(poses, declared, table, noise) {
   const some = side.filter(({ moves, doubt }) => moves >= MOTION * (doubt + noise));
   // That refuses all where it holds of a reading that is no mix-up, or none if both sides have it.
   if (!side.some((one) => !some.includes(one) && (one.reading.faults === 0 || (one.reading.kind === 'quaternion' && one.reading.shared.length)))) return some;
-  throw new Error(`the tolerance is ${short(noise / DEGREE, 3)} degrees, but the numbers describe a rotation of only ${short(Math.min(...side.map(({ moves }) => moves)) / DEGREE, 3)} degrees: too small to judge by`);
+  throw new Error(`the tolerance is ${short(noise / DEGREE, 3)} degrees, but the numbers describe a rotation of only ${short(Math.min(...side.map(({ moves }) => moves)) / DEGREE, 3)} degrees, too small to judge. Give larger rotations, or a smaller tolerance`);
 }
 
 // Radians of the largest turn in some poses, whatever their hand.
@@ -809,7 +809,7 @@ function namesOf(best, others, known, ways, table) {
   }
   if (names.length < 2) return { names: [], question: '' };
   const differ = (what) => new Set(names.map(({ declare }) => declare[0][what])).size > 1, asked = [];
-  if (names.some(({ faults }) => faults[0].includes('intermediate'))) asked.push('Did angles or a quaternion pass from one program to the other?');
+  if (names.some(({ faults }) => faults[0].includes('intermediate'))) asked.push('Which did one program pass to the other, angles or a quaternion?');
   if (differ('order')) asked.push('Does the scalar part of the quaternions come first or last?');
   if (differ('way')) {
     asked.push([best.first.kind, best.second.kind].includes('matrix') ? 'Are the body\'s axes the rows or the columns of the first matrix?'
@@ -860,7 +860,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
     counts[which] = 1;
   }
   if (counts[0] !== counts[1]) {
-    throw new Error(`the first side has ${several(counts[0], 'pose')} and the second ${counts[1]}: they must be the same poses, in order`);
+    throw new Error(`the first side has ${several(counts[0], 'pose')} and the second ${counts[1]}: give the same poses on both sides, in the same order`);
   }
   // What stands in the text goes before what the manual says, and what the reader says before both.
   const declared = sides.map((poses, k) => ({ ...programs[k]?.declared, ...poses.declared, ...given[k][2] }));
@@ -888,7 +888,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
   yield;
   const remarks = sides.flatMap(({ kinds: [kind], numbers, half }, k) => {
     const worst = numbers.map(length).reduce((held, size) => (Math.abs(size - 1) > Math.abs(held - 1) ? size : held), 1);
-    return kind === 'quaternion' && Math.abs(worst - 1) > SLACK + 2 * half ? [`A quaternion of the ${['first', 'second'][k]} side has length ${short(worst)}: it was normalised to length 1.`] : [];
+    return kind === 'quaternion' && Math.abs(worst - 1) > SLACK + 2 * half ? [`A quaternion on the ${['first', 'second'][k]} side has length ${short(worst)}, not 1. We normalised it.`] : [];
   });
   return { ...asked, remarks, asTheirManualsSay, mirrored, verdict, ways, faults: wordsOf(best, table, ways), chains, sides, poses: counts[0],
     residual: 2 * Math.asin(Math.min(1, best.residual / 2)) / DEGREE,

@@ -86,7 +86,7 @@ export function render({ model, el }) {
     try {
       const content = Object.fromEntries(STATE.map((name) => [name, model.get(name)]));
       await navigator.clipboard.writeText(location.href.split('#')[0] + fragmentOf(PLACE, content));
-      words.say('The address is copied. Whoever opens it sees these numbers; they are sent to no server.');
+      words.say('The address is copied. Anyone who opens it sees these numbers. They are not sent to any server.');
     } catch (error) {
       words.say(error.message);
     }
@@ -204,7 +204,7 @@ function answer(found, table, declare) {
   const best = found.chains[0], parts = [element('p', { class: 'heading' }, headingOf(found))];
   if (found.verdict === 'unrelated') {
     const poses = found.poses === 1 ? 'this pose' : `these ${found.poses} poses`;
-    const more = found.poses < 3 ? ' Only three or more poses can show whether an instrument is mounted askew: paste them.' : '';
+    const more = found.poses < 3 ? ' It takes at least three poses to show whether an instrument is mounted askew: paste more poses.' : '';
     return [...parts, element('p', {}, `No combination of up to ${table['most faults']} mix-ups fits ${poses}.${more}${
       found.mirrored && ` The ${found.mirrored} side's matrix has determinant −1: it is a mirror image, not a rotation.`}`)];
   }
