@@ -17,7 +17,6 @@ import datetime
 import functools
 import hashlib
 import io
-import itertools
 import json
 import os
 import re
@@ -54,6 +53,7 @@ MOST_VALUES = 1_000_000  # of the JSON of one notebook: each takes up to a hundr
 MOST_BESIDE, MOST_BYTES_BESIDE = 50, 8 << 20  # files that lie beside one notebook, and their bytes
 DEEPEST = 10  # folders within folders
 MOST_UNPACKED = 4 << 30  # bytes of one archive, all files together
+TOO_LARGE = "The archive unpacks to more than 4 GB. We did not read this file."
 
 #: Files that systems and browsers leave behind: no student handed them in.
 LITTER = (
@@ -66,6 +66,8 @@ LITTER = (
     ".coursework",
     "__pycache__",
 )
+#: Archives of other kinds, or inside the archive that a student made.
+ARCHIVES = (".zip", ".rar", ".7z", ".tar", ".gz", ".tgz", ".bz2", ".xz")
 # What Brightspace, nbgrader and Gradescope put there.
 INDEXES = ("index.html", "timestamp.txt", GRADESCOPE_TABLE)
 TEXT = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.S)
@@ -287,10 +289,13 @@ def take_in(
             of_system = claim and claim.given_by_system and not claim.file
             if not (of_system or _is_by_the_way(name)) or (claim and source not in have):
                 whose = claim.student if claim else ""
-                can = " The notebook in its folder can read it." if source in have else ""
-                refused.append(
-                    Refused(name, whose, f"Not a notebook: its name does not end in .ipynb.{can}")
+                why = (
+                    "We do not open this archive. Unpack it into the student's folder."
+                    if name.lower().endswith(ARCHIVES)
+                    else "Not a notebook: its name does not end in .ipynb."
                 )
+                can = " The notebook in its folder can read it." if source in have else ""
+                refused.append(Refused(name, whose, why + can))
     return notebooks, [_of_whom(one, layout, roster) for one in refused]
 
 
@@ -660,31 +665,17 @@ def _files_of_archive(path: str, refused: list[Refused], repositories: set[str])
     path = os.path.abspath(path)
     _archive.cache_clear()  # another archive may have come to the same place
     try:
-        entries = sorted(_archive(path, os.getpid()).infolist(), key=lambda one: one.filename)
+        entries = _entries(_archive(path, os.getpid()))
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
         raise Unfit(f"{path} is not a zip archive, or it is damaged ({error}).") from None
-    repeated = {
-        one.filename for one, other in itertools.pairwise(entries) if one.filename == other.filename
-    }
+    repositories.update(
+        _shown(entry).partition("/.git/")[0] for entry in entries if "/.git/" in entry.filename
+    )
     unpacked = 0
-    for entry in entries:
-        name = entry.filename
-        shown = name.encode("utf8", "backslashreplace").decode("utf8")
-        if "/.git/" in name:
-            repositories.add(shown.partition("/.git/")[0])
-        if entry.is_dir() or _is_litter(name):
-            continue
-        why = _why_not_unpacked(entry, name)
-        if name in repeated:
-            why = "The archive contains this name more than once."
-        unpacked += min(entry.file_size, MOST_BYTES)
-        if not why and unpacked > MOST_UNPACKED:
-            why = (
-                f"The archive unpacks to more than {MOST_UNPACKED >> 30} GB. We did not read this "
-                "file."
-            )
-        if why:
-            refused.append(Refused(shown, "", why))
+    for shown, entry in _readable(entries, refused):
+        unpacked += entry.file_size
+        if unpacked > MOST_UNPACKED:
+            refused.append(Refused(shown, "", TOO_LARGE))
         else:
             yield shown, entry.date_time, functools.partial(_read_of_class, path, entry)
 
@@ -699,14 +690,39 @@ def _read_of_class(path: str, entry: zipfile.ZipInfo) -> bytes:
     return _read_entry(_archive(path, os.getpid()), entry)
 
 
-def _why_not_unpacked(entry: zipfile.ZipInfo, name: str) -> str:
-    parts = name.replace("\\", "/").split("/")
-    if (
-        name.startswith(("/", "\\"))
-        or ".." in parts
-        or re.match(r"[A-Za-z]:", name)
-        or "\\" in name
-    ):
+def _entries(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
+    """The entries of an archive, sorted by name, with a slash between folders:
+    PowerShell 5 and other programs on Windows write a backslash there.
+    """
+    for entry in archive.infolist():
+        entry.filename = entry.filename.replace("\\", "/")
+    return sorted(archive.infolist(), key=lambda entry: entry.filename)
+
+
+def _shown(entry: zipfile.ZipInfo) -> str:
+    return entry.filename.encode("utf8", "backslashreplace").decode("utf8")
+
+
+def _readable(
+    entries: list[zipfile.ZipInfo], refused: list[Refused], folder: str = ""
+) -> Iterator[tuple[str, zipfile.ZipInfo]]:
+    """The files of an archive that can be read, with the names under which we report them."""
+    names = Counter(entry.filename for entry in entries)
+    for entry in entries:
+        if entry.is_dir() or _is_litter(entry.filename):
+            continue
+        shown, why = folder + _shown(entry), _why_not_unpacked(entry)
+        if names[entry.filename] > 1:
+            why = "The archive contains this name more than once."
+        if why:
+            refused.append(Refused(shown, "", why))
+        else:
+            yield shown, entry
+
+
+def _why_not_unpacked(entry: zipfile.ZipInfo) -> str:
+    name = entry.filename
+    if name.startswith("/") or ".." in name.split("/") or re.match(r"[A-Za-z]:", name):
         return "Its path leads out of the archive."
     if stat.S_ISLNK(entry.external_attr >> 16):
         return "This is a link, which we did not follow."
@@ -743,25 +759,15 @@ def _inside_archive(name: str, read: Read, refused: list[Refused]) -> Iterator[t
     try:
         data = read()
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            entries = sorted(archive.infolist(), key=lambda entry: entry.filename)
+            entries = _entries(archive)
     except (Unfit, zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
         refused.append(Refused(name, "", f"We cannot read this archive: {str(error)[:100]}"))
         return
     if len(entries) > MOST_BESIDE or sum(entry.file_size for entry in entries) > MOST_BYTES:
         refused.append(Refused(name, "", "This archive is too large for a student's work."))
         return
-    names = Counter(entry.filename for entry in entries)
-    for entry in entries:
-        inner = f"{name}/" + entry.filename.encode("utf8", "backslashreplace").decode("utf8")
-        if entry.is_dir() or _is_litter(entry.filename):
-            continue
-        why = _why_not_unpacked(entry, entry.filename)
-        if names[entry.filename] > 1:
-            why = "The archive contains this name more than once."
-        if why:
-            refused.append(Refused(inner, "", why))
-        else:
-            yield inner, functools.partial(_read_packed, read, entry)
+    for inner, entry in _readable(entries, refused, f"{name}/"):
+        yield inner, functools.partial(_read_packed, read, entry)
 
 
 def _read_packed(read: Read, entry: zipfile.ZipInfo) -> bytes:
