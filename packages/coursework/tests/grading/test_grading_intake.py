@@ -436,7 +436,7 @@ def test_a_roster_that_cannot_be_used_is_said(tmp_path):
         (tmp_path / "roster.csv").write_text(text)
         with pytest.raises(BadRoster, match=why):
             Roster(tmp_path / "roster.csv")
-    with pytest.raises(BadRoster, match="cannot read the roster"):
+    with pytest.raises(BadRoster, match="cannot read the table"):
         Roster(tmp_path / "none.csv")
 
 

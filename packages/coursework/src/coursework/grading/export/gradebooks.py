@@ -625,9 +625,12 @@ def _scale(book: Gradebook, system: System, place: int) -> tuple[float | None, i
         elif book.says(first, book.column("id")):
             break
         first += 1
-    comma = bool(re.fullmatch(r"\d+,\d+", said))  # as the language writes numbers
+    # A spreadsheet writes "1,000.00" and separates fields by commas, or else "1.000,00" and
+    # separates them by semicolons.
+    said = re.sub(r"(?<=\d),(?=\d{3}\b)", "", said) if book.delimiter == "," else said
+    comma = bool(re.search(r"\d,\d", said)) or (book.delimiter == ";" and "." not in said)
     try:
-        return float(said.replace(",", ".")), first, comma
+        return float(said.replace(".", "").replace(",", ".") if comma else said), first, comma
     except ValueError:
         return None, first, comma
 

@@ -493,7 +493,9 @@ def read_term(path: str | Path) -> Term:
         try:
             file.zone = ZoneInfo(str(zone))
         except (ZoneInfoNotFoundError, ValueError):
-            raise file.bad("time-zone", f"there is no time zone {zone!r}.") from None
+            raise file.bad(
+                "time-zone", f"there is no time zone {zone!r}. Write one like 'Europe/Amsterdam'."
+            ) from None
     term: Term = from_table(file, Term, "", {"name": path.parent.name} | said)
     if "time-zone" not in said:
         raise file.bad("", "add the time zone, such as time-zone = 'Europe/Amsterdam'.")

@@ -224,7 +224,7 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
         header, lines = cells_in(path)
     except (OSError, csv.Error) as error:
         raise BadRoster(
-            f"We cannot read the roster {path}: {getattr(error, 'strerror', error)}."
+            f"We cannot read the table {path}: {getattr(error, 'strerror', error)}."
         ) from None
     repeated = [name for name, times in Counter(header).items() if times > 1 and name]
     if repeated:
