@@ -61,12 +61,9 @@ LOCKERS = {
 }
 DECIMALS = (
     "Your answer has decimal fractions, but the question asks for an exact one: write "
-    "`sm.Rational(1, 2)` and `sm.sqrt(3)`."
+    "numbers such as `sm.Rational(1, 2)` and `sm.sqrt(3)`."
 )
-NEARLY = (
-    "This agrees with the exact answer to about three digits, but the question asks for an exact "
-    "answer."
-)
+NEARLY = "This agrees with the right answer to about three digits."
 BLANK = "Put your answer in place of the `...` and run the cells again."
 STRAY = "The answer contains `y`, but this question has the symbols `x`."
 ALL_WRONG = questions.kind_of_values(EXACT).wrong
@@ -113,9 +110,9 @@ def test_a_symbol_that_is_missing_is_named():
     wrong = questions.kind_of_values(question).wrong
     assert questions.what_can_be_said(question, plain) == wrong
     asked = Question("expression", symbols=question.symbols, every_symbol=True)
-    assert questions.what_can_be_said(asked, plain) == f"{wrong} It does not contain `z`."
+    assert questions.what_can_be_said(asked, plain) == f"{wrong} Your answer contains no `z`."
     holds = questions.what_can_be_said(asked, to_plain(sm.Symbol("z")))
-    assert holds == f"{wrong} It does not contain `x` and no `phi`."
+    assert holds == f"{wrong} Your answer contains no `x` and no `phi`."
     only = "The question uses `x`, `phi`, `z`, but your answer contains only numbers."
     assert questions.what_can_be_said(asked, to_plain(3)) == only
 
@@ -200,13 +197,13 @@ def test_an_answer_is_the_nearest_that_is_known(answer, expected):
 
 def test_numbers_with_fewer_places_than_count_may_be_rounded():
     vector = Question("vector", salt="s", tolerance=0.004, relative=0.001, length=2)
-    few = {0.33: ("2 places", "0.004"), 1.3: ("1 place", "0.005"), 10.3: ("1 place", "0.01")}
+    few = {0.33: ("2 decimal places", "0.004"), 1.3: ("1 decimal place", "0.005")}
     enough = (-110.33, 4.33, 7.0, 0.5, 0.333, 0.25, 1e-5)
-    few[0.2] = ("1 place", "0.004")
+    few |= {10.3: ("1 decimal place", "0.01"), 0.2: ("1 decimal place", "0.004")}
     for entry, (places, allowed) in few.items():
         assert reply_to(vector, {}, [entry, 1])[2] == (
-            f"If you rounded, keep all digits until the end: `{entry:g}` has {places}, and an "
-            f"answer may be off by {allowed}. {FORM}"
+            f"If you rounded, keep all digits until the end: `{entry:g}` has {places}, but an "
+            f"answer may be off by at most {allowed}. {FORM}"
         )
     assert {reply_to(vector, {}, [entry, sm.Rational(1, 3)])[2] for entry in enough} == {ALL_WRONG}
     # Nobody has rounded the components of an exact vector.
@@ -219,7 +216,7 @@ def test_numbers_that_nearly_fit_together_may_be_rounded():
         reply_to(unit, {}, answer) for answer in [[sm.sqrt(3) / 3] * 3, [0.577] * 3, [0.5] * 3]
     )
     assert right[1] == "" and coarse[:2] == wrong[:2] == ("invalid", "not unit length")
-    assert coarse[2].startswith("The numbers nearly agree. If you rounded, ")
+    assert coarse[2].startswith("The numbers nearly fit together. If you rounded, ")
     assert "0.999" in coarse[3]
     assert len(wrong) == 3 and wrong[2].endswith("this one has length 0.866.")
     exact = Question("vector", salt="s", unit_vector=True)

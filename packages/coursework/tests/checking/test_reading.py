@@ -88,7 +88,7 @@ def test_the_numbers_of_an_answer(question, answer, numbers):
 WANTED = {
     "expression": "a single expression",
     "vector": "a list of 3 numbers",
-    "matrix": "a matrix of 2 × 3",
+    "matrix": "a matrix of size 2 × 3",
     "measurement": "a number and its unit, such as `(3.2, 'N m')`",
     "truth values": "a list of 3 Booleans, `True` or `False`",
     "order": "a list with each of `a`, `b`, `c` once",
@@ -101,9 +101,9 @@ ROWS = "a list of rows, one of which has"
 @pytest.mark.parametrize(
     ("question", "answer", "description"),
     [
-        (EXPRESSION, sm.eye(2), "a matrix of 2 × 2"),
-        (EXPRESSION, sm.Matrix([[1, 2]]), "a matrix of 1 × 2"),
-        (EXPRESSION, sm.Matrix([1, 2]), "a matrix of 2 × 1"),
+        (EXPRESSION, sm.eye(2), "a matrix of size 2 × 2"),
+        (EXPRESSION, sm.Matrix([[1, 2]]), "a matrix of size 1 × 2"),
+        (EXPRESSION, sm.Matrix([1, 2]), "a matrix of size 2 × 1"),
         (EXPRESSION, [1, 2], "a list with 2 entries"),
         (EXPRESSION, [[]], "an empty list"),
         (EXPRESSION, [[1, 2], [3, 4]], "a list of 2 rows with 2 entries each"),
@@ -131,9 +131,9 @@ ROWS = "a list of rows, one of which has"
         (VECTOR, [1, ..., 3], "a list with blanks"),
         (VECTOR, [1, [..., ...], 3], "a list with blanks"),
         (VECTOR, [1, True, 3], "a list with 3 entries, one of which is a Boolean"),
-        (VECTOR, sm.Matrix([[1, 2]]), "a matrix of 1 × 2"),
+        (VECTOR, sm.Matrix([[1, 2]]), "a matrix of size 1 × 2"),
         (VECTOR, A.x, "a vector"),
-        (MATRIX, sm.eye(2), "a matrix of 2 × 2"),
+        (MATRIX, sm.eye(2), "a matrix of size 2 × 2"),
         (MATRIX, [[1, 2, 3]], "a list of one row with 3 entries"),
         (MATRIX, [[1, 2], [3, 4]], "a list of 2 rows with 2 entries each"),
         (MATRIX, [[1, 2, 3], [4, 5]], f"{ROWS} 2 entries"),
@@ -150,7 +150,7 @@ ROWS = "a list of rows, one of which has"
         (
             MATRIX,
             [[1, 2, 3], sm.eye(2)],
-            "a list with 2 entries, one of which is a matrix of 2 × 2",
+            "a list with 2 entries, one of which is a matrix of size 2 × 2",
         ),
         (MATRIX, "7", "a string: write it without quotation marks"),
         (MEASUREMENT, 7, "a single expression"),

@@ -68,7 +68,7 @@ def _dcm(question: Question, value: Value) -> list[int]:
                 f"These vectors are not connected with the frame `{source}` of the question.",
             )
         value = ["list", [by_frame(row)[source] for row in rows]]
-    return row_entries(value, 3, 3, "A matrix of 3 × 3")
+    return row_entries(value, 3, 3, "A matrix of size 3 × 3")
 
 
 def _axis_and_angle(question: Question, value: Value) -> list[int]:
@@ -224,7 +224,7 @@ KINDS = {
         mistakes=mistakes.of_quaternion,
         slips={
             "conjugate": (
-                "it is the conjugate, and its conjugate has another mistake.",
+                "it is the conjugate, and it has another mistake.",
                 lambda question, numbers: [numbers[0], *(-number for number in numbers[1:])],
             )
         },

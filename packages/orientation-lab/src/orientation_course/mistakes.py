@@ -54,9 +54,9 @@ def _product(question: Question) -> str:
 def _other_order(question: Question) -> str:
     if question.kind_of_values == "quaternion":
         return (
-            "The quaternions are multiplied in the wrong order. That of the first rotation goes on "
-            "the left, unlike with matrices. In your order the axes are fixed in the first frame "
-            "(space fixed)."
+            "The quaternions are multiplied in the wrong order. The quaternion of the first "
+            "rotation goes on the left, not on the right as with matrices. In your order the axes "
+            "are fixed in the first frame (space fixed)."
         )
     return (
         "The factors are multiplied in the wrong order. The matrix of the first rotation goes on "
@@ -114,7 +114,7 @@ MESSAGES: dict[str, Callable[..., str]] = {
         "The scalar part comes last here, and the vector part has the wrong sign."
     ),
     "whole angle": lambda question: (
-        "You have used the whole angle. A quaternion holds the sine and cosine of *half* the angle."
+        "You used the whole angle. A quaternion holds the sine and cosine of *half* the angle."
     ),
     "quarter angle": lambda question: "You halved the angle twice.",
     "angles of another sequence": lambda question, sequence: (

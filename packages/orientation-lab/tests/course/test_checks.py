@@ -236,7 +236,7 @@ def reply_to(authored, answer):
             "stray symbol",
             "contains w, but this question has the symbols theta, alpha, varphi",
         ),
-        (GIMBAL[:2, :], "shape", "a matrix of 2 × 3"),
+        (GIMBAL[:2, :], "shape", "a matrix of size 2 × 3"),
         ([list(GIMBAL)], "shape", "one row with 9"),
         (theta, "shape", "a single expression"),
         ("zxy", "shape", "a string"),

@@ -199,11 +199,11 @@ def _offer_sibling(reply: Reply, question: Question, help_had: str) -> None:
     elif siblings:
         notice = f"You had help: {HELP.get(help_had, 'we showed it')}."
         if order == len(siblings):
-            reply.messages.append(f"{notice} There are no more siblings.")
+            reply.messages.append(f"{notice} There are no more siblings of this question.")
             return
         reply.sibling = siblings[order]
         reply.messages.append(
-            f"{notice} For practice, solve it with other numbers and without help. "
+            f"{notice} For practice, solve the question with other numbers and without help. "
             f"`variant('{reply.sibling}')` shows them, and `check('{reply.sibling}', ...)` checks "
             "your answer."
         )

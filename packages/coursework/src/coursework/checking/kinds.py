@@ -78,7 +78,7 @@ def shape_fault(expected: str, got: Value | str) -> Fault:
 def _describe(value: Value) -> str:
     kind = str(value[0])
     if kind == "matrix":
-        return f"a matrix of {value[1]} × {value[2]}"
+        return f"a matrix of size {value[1]} × {value[2]}"
     if kind == "list":
         parts = parts_of(value)
         lengths = {len(parts_of(row)) for row in parts if row[0] == "list"}
@@ -209,7 +209,7 @@ def _row(whole: Value, row: Value, columns: int, expected: str) -> list[int]:
 
 def _matrix(question: Question, value: Value) -> list[int]:
     rows, columns = question.shape or (3, 3)
-    return row_entries(value, rows, columns, f"A matrix of {rows} × {columns}")
+    return row_entries(value, rows, columns, f"A matrix of size {rows} × {columns}")
 
 
 # --- answers in words ---------------------------------------------------------------------------

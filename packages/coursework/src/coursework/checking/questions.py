@@ -510,11 +510,7 @@ def _not_known(
             name,
             "wrong",
             "rounded too far",
-            [
-                "This agrees with the exact answer to about three digits, but the question asks "
-                "for an exact answer.",
-                decimals,
-            ],
+            ["This agrees with the right answer to about three digits.", decimals],
         )
     for slip, why, turned in () if rounded else other_readings(question, reading):
         known = _known_in(question, turned, find(fingerprint(question, turned)))
@@ -551,7 +547,7 @@ def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, 
         # Without a quantity the question may ask for degrees: then only the right answer counts.
         angles = question.quantity in (None, "angle")
         if angles and question.kind_of_values in ("expression", "vector", "matrix"):
-            message_text = "it is in degrees, and it has another mistake."
+            message_text = "the answer is in degrees, and it has another mistake."
             radians = [[number * MP.pi / 180 for number in numbers] for numbers in reading.numbers]
             yield IN_DEGREES, message_text, Reading(radians)
 
@@ -560,7 +556,7 @@ def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
     exact = question.tolerance is None and reading.text is None
     if not exact or not any(node[0] == "float" for node in plain["nodes"]):
         return ""
-    exact_forms = "`sm.Rational(1, 2)` and `sm.sqrt(3)`"
+    exact_forms = "numbers such as `sm.Rational(1, 2)` and `sm.sqrt(3)`"
     return (
         "Your answer has decimal fractions, but the question asks for an exact one: write "
         f"{exact_forms}."
@@ -591,7 +587,8 @@ def _few_digits(question: Question, plain: Plain) -> str:
         if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > 4:
             return (
                 f"If you rounded, keep all digits until the end: `{float(digits):g}` has "
-                f"{number_of(places, 'place')}, and an answer may be off by {allowed:.1g}."
+                f"{number_of(places, 'decimal place')}, but an answer may be off by at most "
+                f"{allowed:.1g}."
             )
     return ""
 
@@ -605,7 +602,7 @@ def _coarse(question: Question, reading: Reading) -> str:
     """Return a message on numbers that are inconsistent, but would fit with fewer digits."""
     if question.tolerance is None or fault(replace(question, tolerance=COARSE), reading):
         return ""
-    return "The numbers nearly agree. If you rounded, keep all digits until the end."
+    return "The numbers nearly fit together. If you rounded, keep all digits until the end."
 
 
 def _precision(plain: Plain) -> tuple[bool, bool]:
@@ -642,6 +639,6 @@ def what_can_be_said(question: Question, plain: Plain) -> str:
     message_text = kind_of_values(question).wrong
     if question.every_symbol and missing:
         message_text += (
-            f" It does not contain {' and no '.join(f'`{symbol}`' for symbol in missing)}."
+            f" Your answer contains no {' and no '.join(f'`{symbol}`' for symbol in missing)}."
         )
     return message_text

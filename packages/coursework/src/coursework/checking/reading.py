@@ -258,7 +258,7 @@ def _number(question: Question, result: Any, varies: bool = False) -> Number:
     except ValueError:
         raise Fault(
             "not real",
-            "The answer has an imaginary part, but the question asks for something real.",
+            "The answer has an imaginary part, but the question asks for a real answer.",
         ) from None
 
 

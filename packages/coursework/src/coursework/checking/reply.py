@@ -18,7 +18,7 @@ OUTCOMES = {
     "invalid": ("!", "Wrong form", "#b54708"),
     "undecided": ("?", "Undecided", "#5b5fc7"),
     "hints": ("→", "So far", "#6b7280"),
-    "recorded": ("→", "Taken down", "#5b5fc7"),
+    "recorded": ("→", "Recorded", "#5b5fc7"),
     "not attempted": ("…", "Not attempted", "#6b7280"),
 }
 

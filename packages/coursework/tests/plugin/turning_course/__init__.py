@@ -54,7 +54,7 @@ def another(question, answer):
 KINDS = {
     "rotation matrix": Kind(
         begin="Draw both triads for a small angle and read off one row.",
-        entries=lambda question, value: row_entries(value, 3, 3, "A matrix of 3 × 3"),
+        entries=lambda question, value: row_entries(value, 3, 3, "A matrix of size 3 × 3"),
         fault=fault,
         wrong="This is a rotation matrix, but not the right one.",
         needs=("frames",),
