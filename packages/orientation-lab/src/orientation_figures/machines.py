@@ -147,7 +147,8 @@ def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
         "A tilted phone above the ground. "
         "In its frame P, p x points to the right across the screen, p y towards its top edge, and "
         "p z out of the screen. "
-        "From its middle an arrow points straight up, which is what the accelerometer measures. "
+        "An arrow from the middle of the phone, which the accelerometer measures, points straight "
+        "up. "
         f"Another arrow, the magnetic field, points north, {in_degrees(dip)} below "
         "the horizontal. "
         "Up crossed with the field is horizontal and points west. "
@@ -236,7 +237,7 @@ def earth_drawing(longitude=np.radians(68), latitude=np.radians(38)):
         "G: g x east, g y north, g z straight up. "
         "N: n x north, n y east, n z down, into the Earth. "
         "The angle lambda runs along the equator from e x to the meridian of the place, and phi "
-        "up the meridian from there.",
+        "from there along the meridian to the place.",
         view_from(np.radians(48), np.radians(22)),
         150,
     )

@@ -52,7 +52,7 @@ LABELS = (
     *(rf"\mathbf{{C}}_{axis}" for axis in "xyz"),
     # The axes of the plots of motion.
     r"\mathbf{H}",
-    r"\mathrm{not\ orthogonal\ by}",
+    r"\mathrm{departure\ from\ orthogonality}",
     r"\mathrm{error\ (rad)}",
     r"\mathrm{margin\ to\ gimbal\ lock\ (degrees)}",
     r"t\ \mathrm{(s)}",

@@ -186,7 +186,7 @@ export function render({ model, el }) {
   plot.svg.removeAttribute('aria-roledescription');
   put(plot.svg, 'role', 'img');
   put(plot.svg, 'class', 'sheet plot');
-  put(plot.svg, 'aria-label', 'Plots over time of how far each description is from orthogonal, of its error against the reference, '
+  put(plot.svg, 'aria-label', 'Plots over time of how far each description departs from orthogonality, of its error relative to the reference, '
     + 'both on logarithmic scales, and of the margin to gimbal lock. The table gives the values at the chosen time.');
   const redraw = onceAFrame(draw);
 
@@ -221,7 +221,7 @@ export function render({ model, el }) {
       element('svg', { class: 'swatch', viewBox: '0 0 34 10', 'aria-hidden': 'true' }, element('path', { class: `axis ${COLOURS[name]}`, d: 'M2 5H32' })),
       element('span', {}, title))), faulty, wrong) };
   });
-  const heads = ['Drawn', 'not orthogonal\u00a0by', 'error (rad)'].map((text) => element('th', { scope: 'col' }, text));
+  const heads = ['Drawn', 'departure from orthogonality', 'error (rad)'].map((text) => element('th', { scope: 'col' }, text));
   const aside = element('p', { class: 'aside' }), text = liveText();
 
   // Beside the drawing, so that on a phone it stays in view with it.

@@ -101,7 +101,7 @@ export function down(part, value) {
 
 export function axes(sheet) {
   const origin = [0, 0, 0];
-  for (const [part, title, marks] of [[FAULT, '$\\mathrm{not\\ orthogonal\\ by}$', [[-15, '$10^{-15}$'], [-10, '$10^{-10}$'], [-5, '$10^{-5}$'], [0, '$1$']]], [ERROR, '$\\mathrm{error\\ (rad)}$', [[-10, '$10^{-10}$'], [-5, '$10^{-5}$'], [0, '$1$']]], [MARGIN, '$\\mathrm{margin\\ to\\ gimbal\\ lock\\ (degrees)}$', [[0, '$0$'], [90, '$90$']]]]) {
+  for (const [part, title, marks] of [[FAULT, '$\\mathrm{departure\\ from\\ orthogonality}$', [[-15, '$10^{-15}$'], [-10, '$10^{-10}$'], [-5, '$10^{-5}$'], [0, '$1$']]], [ERROR, '$\\mathrm{error\\ (rad)}$', [[-10, '$10^{-10}$'], [-5, '$10^{-5}$'], [0, '$1$']]], [MARGIN, '$\\mathrm{margin\\ to\\ gimbal\\ lock\\ (degrees)}$', [[0, '$0$'], [90, '$90$']]]]) {
     const [top, bottom] = part.slice(0, 2);
     sheet.label(origin, title, 'ink', [(LEFT + RIGHT) / 2, top - 13], 16);
     for (const second of [0, 5, 10, 15, 20]) {

@@ -115,7 +115,7 @@ def drawing(figure, Sheet):
     sheet = Sheet(
         "A camera gimbal: a handgrip A, an outer ring B, an inner ring C and a camera D, each "
         f"turned from the frame before it about a shared axis: {spoken}. "
-        f"The axes of psi and phi are {in_degrees(figure.margin)} apart. At 0 the "
+        f"The axes of psi and phi are {in_degrees(figure.margin)} apart. If they coincide, the "
         "gimbal is locked. "
         "Beside it are the triads of A and D.",
         view=view_from(math.radians(58), math.radians(22)),

@@ -78,7 +78,7 @@ def picture(sheet, edges, dcms, path):
 
 def drawing(figure, Sheet):
     words = "; ".join(
-        f"{frame} is turned in {reference} about {axis} by {in_degrees(angle)}"
+        f"{frame} is turned in {reference} through {in_degrees(angle)} about {axis}"
         for frame, reference, axis, angle in figure.edges
     )
     sheet = Sheet(

@@ -144,7 +144,7 @@ def axes(sheet):
     for part, title, marks in [
         [
             FAULT,
-            r"$\mathrm{not\ orthogonal\ by}$",
+            r"$\mathrm{departure\ from\ orthogonality}$",
             [[-15, "$10^{-15}$"], [-10, "$10^{-10}$"], [-5, "$10^{-5}$"], [0, "$1$"]],
         ],
         [ERROR, r"$\mathrm{error\ (rad)}$", [[-10, "$10^{-10}$"], [-5, "$10^{-5}$"], [0, "$1$"]]],
@@ -228,16 +228,16 @@ def plot(figure, Sheet):
         [margins[max(0, k - every + 1) : k + 1].min() for k in range(0, len(margins), every)]
     )
     last = "; ".join(
-        f"{title}, not orthogonal by {_words(faults[name][-1])}, error {_words(errors[name][-1])} "
-        "radians"
+        f"{title}, departure from orthogonality {_words(faults[name][-1])}, error "
+        f"{_words(errors[name][-1])} radians"
         for name, title in _DESCRIPTIONS.items()
     )
     sheet = Sheet(
         f"Three plots over the {SECONDS:.0f} seconds of the run, which has reached "
         f"{times[-1]:.1f} seconds. "
-        "The top plot shows, on a logarithmic scale, how far each description is from "
-        "orthogonal. The middle plot shows its error against the reference. The bottom plot shows "
-        f"how far the Euler angles are from gimbal lock, which is never less than "
+        "The top plot shows, on a logarithmic scale, how far each description departs from "
+        "orthogonality. The middle plot shows its error relative to the reference. The bottom "
+        "plot shows how far the Euler angles are from gimbal lock, which is never less than "
         f"{margin.min():.0f} degrees. "
         f"At the end: {last}."
     )
