@@ -9,11 +9,10 @@ back. Nothing that a student wrote gets into it.
 import datetime
 import functools
 import getpass
+import io
 import json
 import math
-import os
 import re
-import secrets
 import zipfile
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -370,20 +369,19 @@ def columns(
         return [(assignment, about[assignment].column if assignment in about else None)]
     header = [name.casefold() for name in _read(path, term.gradebook).header]
     graded = {name for _, name in Journal(store.folder).standing().given}
+    named = [(name, one.column) for name, one in about.items() if name in graded and one.column]
     there = [
-        (name, one.column)
-        for name, one in about.items()
-        if name in graded
-        and one.column
-        and any(there.startswith(one.column.casefold()) for there in header)
+        (name, column)
+        for name, column in named
+        if any(title.startswith(column.casefold()) for title in header)
     ]
-    used = [column for _, column in there]
-    if len(set(used)) < len(used):
+    if len({column for _, column in there}) < len(there):
         several = ", ".join(name for name, column in there)
         raise CannotExport(
             f"{several} have columns of the same name. Choose one with --assignment."
         )
-    return [*there] or [(None, None)]
+    # If the system has renamed the column, filling it reports that. We never guess another.
+    return [*(there or named[:1])] or [(None, None)]
 
 
 def _read(path: str | Path, names: Mapping[str, str]) -> Gradebook:
@@ -607,9 +605,10 @@ def _column(book: Gradebook, system: System, column: str | None) -> int:
         ]
     if len(places) != 1:
         names = [book.header[place] for place in places] or book.header
+        what = f"correct column = {column!r} in" if column else "add column = '...' to"
         raise CannotExport(
-            "In term.toml, add column = '...' to the assignment's table. The "
-            f"gradebook has the columns {', '.join(map(repr, names))}."
+            f"In term.toml, {what} the assignment's table. The gradebook has the columns "
+            f"{', '.join(map(repr, names))}."
         )
     return places[0]
 
@@ -728,18 +727,14 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> str:
                 "term.toml."
             )
         pages[name] = page
-    half = Path(path).with_name(f".half-{secrets.token_hex(8)}")
-    try:
-        half.touch(0o600)
-        with zipfile.ZipFile(half, "w", zipfile.ZIP_DEFLATED) as archive:
-            for name, page in sorted(pages.items()):
-                # With a fixed date: the same pages give the same bytes.
-                entry = zipfile.ZipInfo(name)
-                entry.compress_type = zipfile.ZIP_DEFLATED
-                archive.writestr(entry, page.read_bytes())
-        os.replace(half, path)
-    finally:
-        half.unlink(missing_ok=True)
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, page in sorted(pages.items()):
+            # With a fixed date: the same pages give the same bytes.
+            entry = zipfile.ZipInfo(name)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            archive.writestr(entry, page.read_bytes())
+    write(path, packed.getvalue(), private=True)
     return f"{number_of(len(pages), 'page')} of feedback: {path}"
 
 
