@@ -143,7 +143,7 @@ def test_a_plugin_that_cannot_be_loaded_is_named(monkeypatch):
 def test_a_kind_of_question_has_one_owner(monkeypatch):
     plugin = type("plugin", (), {"__name__": "statics", "KINDS": {"expression": plugins.Kind()}})
     monkeypatch.setattr(plugins, "plugins", lambda: [plugin])
-    with pytest.raises(RuntimeError, match="'expression', but there is one already"):
+    with pytest.raises(RuntimeError, match="'expression', but another kind already has"):
         plugins.kinds.__wrapped__()
 
 

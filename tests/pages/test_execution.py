@@ -212,7 +212,7 @@ def test_cells_that_a_page_hides_run_before_the_next_one(monkeypatch):
 def test_a_chapter_that_was_never_run_can_be_seen():
     (kind,) = cells.classify([code_cell("6 * 7", ran=False)])
     assert kind["needs"] == []
-    with pytest.raises(RuntimeError, match="gives a result other than the stored one"):
+    with pytest.raises(RuntimeError, match="gives a result that differs from the stored one"):
         cells.classify([code_cell("6 * 7", text="41")])
 
 

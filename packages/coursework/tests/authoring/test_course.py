@@ -113,7 +113,7 @@ def test_one_notebook_is_released_alone(tmp_path):
     ("text", "says"),
     [
         ("title = 3", "the settings are title"),
-        ("titel = 'Statics'", "what is 'titel'"),
+        ("titel = 'Statics'", "but not 'titel'"),
         ("title = ", "Invalid value"),
     ],
 )

@@ -79,7 +79,7 @@ def test_what_becomes_of_each_file(work, tmp_path):
         "replaced    README.txt, which you had not changed",
         "kept yours  kept.txt, since its exercise has not changed",
         f"replaced    {OLD_WHEEL}",
-        "kept yours  mine.ipynb, and put the new one in mine-new-1.ipynb",
+        "kept yours  mine.ipynb, and put the new version in mine-new-1.ipynb",
         "added       new.ipynb",
         "replaced    old.ipynb, which you had not changed",
         "changed     requirements.txt",
@@ -88,7 +88,7 @@ def test_what_becomes_of_each_file(work, tmp_path):
         "replaced    sealed/a.json",
         "the same    sealed/b.json",
         "added       sealed/variants/a-1.json",
-        "kept yours  unknown.txt, and put the new one in unknown-new-1.txt",
+        "kept yours  unknown.txt, and put the new version in unknown-new-1.txt",
         install,
     ]
     now = contents(work)
@@ -113,7 +113,7 @@ def test_what_is_put_beside_takes_no_other_files_place(work, tmp_path):
         line = update(archive, work)[0]
         # What was put there before and nobody has changed gives way; what somebody changed stays.
         place = 1 if number < 3 else 2
-        assert line == f"kept yours  a.txt, and put the new one in a-new-{place}.txt"
+        assert line == f"kept yours  a.txt, and put the new version in a-new-{place}.txt"
         assert (work / f"a-new-{place}.txt").read_bytes() == data
         if number == 2:
             (work / "a-new-1.txt").write_bytes(b"mine, too")
@@ -201,7 +201,7 @@ def test_a_manifest_that_cannot_be_read_knows_nothing_and_a_newer_one_refuses(wo
         (work / "a.ipynb").write_bytes(notebook("one"))
         (work / "manifest.json").write_text(text)
         assert update(archive, work) == [
-            "kept yours  a.ipynb, and put the new one in a-new-1.ipynb"
+            "kept yours  a.ipynb, and put the new version in a-new-1.ipynb"
         ]
     (work / "manifest.json").write_text('{"format": 2, "files": {}}')
     with pytest.raises(ArchiveRefused, match="^manifest.json .* has format 2, .* reads 1[.]"):

@@ -274,7 +274,7 @@ def test_what_a_system_adds_is_no_refusal(box):
         "submitted/ann/turns/turns.ipynb", "submitted/ann/turns/answer.pdf", *folders, path=box
     )
     assert list(found.values()) == ["ann"] and list(refused) == ["submitted/ann/turns/answer.pdf"]
-    assert "notebook in its folder can read it" in refused["submitted/ann/turns/answer.pdf"]
+    assert "notebook in the same folder can read it" in refused["submitted/ann/turns/answer.pdf"]
     around = [f"course/{name}" for name in ("submitted/ann/turns/turns.ipynb", *folders)]
     assert named(*around, path=box)[1] == {}
 

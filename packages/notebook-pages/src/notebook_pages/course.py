@@ -45,7 +45,7 @@ def publish(parts, workshop, site):
     if parts["format"] != FORMAT:
         raise ValueError(
             f"the parts of the course have format {parts['format']}, but these pages need format "
-            f"{FORMAT}"
+            f"{FORMAT}. Install coursework and notebook-pages from the same edition"
         )
     named = os.environ.get("NOTEBOOK_PAGES_FETCHED")
     places = [Path(named).resolve()] if named else [Path.cwd(), WORKING_COPY]

@@ -29,7 +29,7 @@ from .set_up import IN_BROWSERS, LOCK, PACKAGE, WHEELS, npm
 
 CONSTRAINTS = REPOSITORY / "constraints.txt"
 # npm packages that are not updated, with the reasons.
-HELD = {"codemirror": "later numbers hold an older editor, published by mistake"}
+HELD = {"codemirror": "later versions contain an older editor, published by mistake"}
 # Front ends, which wheels for browsers require and do not get, since JupyterLite has its own.
 NOT_IN_BROWSERS = {"jupyterlab-widgets", "widgetsnbextension"}
 
@@ -200,7 +200,7 @@ def main():
         changed = path.read_text("utf8") != text
         path.write_text(text, "utf8")
         print(f"{path.relative_to(REPOSITORY)}: {'renewed' if changed else 'unchanged'}")
-    print("Now: .ci/run")
+    print("Now run .ci/run")
 
 
 if __name__ == "__main__":

@@ -156,7 +156,7 @@ a {{ color: #0a58ca }}
   body {{ background: #16191d; color: #dfe2e6 }} a {{ color: #8ab8ff }}
 }}</style>
 </head><body><main><h1>There is no such page</h1>
-<p>It may have been moved, or the address is not whole. Everything in <i>{title}</i> is one
+<p>It may have been moved, or the address may be incomplete. Everything in <i>{title}</i> is one
 step from its <a href="{front}index.html">front page</a>, and can be
 <a href="{front}search.html">searched</a>.</p></main>
 <script>

@@ -127,7 +127,7 @@ def chapter_downloads(app, pagename, doctree):
     packages = {
         "path": f"{FOLDER}/{packages_archive()}",
         "text": "Packages",
-        "note": "what the code imports, with how to install it",
+        "note": "the packages that the code imports, and how to install them",
     }
     return [
         {

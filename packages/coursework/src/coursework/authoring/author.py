@@ -585,7 +585,11 @@ class Pages:
         """
         places = self.places()
         if len(places) >= sealing.NO_PAGE:
-            raise AuthorError("A question has too many authored mistakes and hints. Remove some.")
+            raise AuthorError(
+                "The mistakes, hints and worked solution of a question make "
+                f"{len(places)} sealed entries, but only {sealing.NO_PAGE - 1} are possible. "
+                "Remove some mistakes or hints."
+            )
         for key in sorted(self.contents):
             content, solution = self.contents[key]
             if solution:

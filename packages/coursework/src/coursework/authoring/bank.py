@@ -39,7 +39,7 @@ from .variation import drawn_in
 if TYPE_CHECKING:
     from nbformat import NotebookNode
 
-OPPOSITES = "an answer and its opposite are right, and Moodle marks each number by itself"
+OPPOSITES = "an answer and its opposite are right, but Moodle marks each number separately"
 #: The line in which students write their answer.
 PICTURE = re.compile(r"!\[([^\]]*)\]\([^)]*\)|<img[^>]*alt=\"([^\"]*)\"[^>]*>")
 BLANK = re.compile(r"^.*# your answer\n?", re.M)

@@ -107,8 +107,8 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
     closed = sum(one.worth for one in asked.values() if one.possible)
     points = sum(one.worth for one in asked.values())
     lines.append(
-        f"{closed:g} of {points:g} points are for answers that a script finds within {MOST:,} "
-        "tries. A script that tries formulas finds more."
+        f"{closed:g} of {points:g} points are for answers that a script can find within {MOST:,} "
+        "tries. A script that tries formulas can find more."
     )
     if exercises:
         fixed = {name: one for name, one in exercises.items() if one.variants == 1}

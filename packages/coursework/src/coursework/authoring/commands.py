@@ -212,8 +212,8 @@ def bank(out: Path, format: str, questions: Sequence[str]) -> None:
     exported, left = write(_course(), out, format, questions)
     print(*left, sep="\n", end="\n" * bool(left))
     print(
-        f"We wrote {out}. Questions: {len(exported)}. Their variants: "
-        f"{sum(map(len, exported.values()))}. Questions left out: {len(left)}."
+        f"We wrote {len(exported)} of {len(exported) + len(left)} questions to {out}, with "
+        f"{sum(map(len, exported.values()))} variants in all."
     )
     print(f"{out} HOLDS ALL ANSWERS AND SOLUTIONS. It is for instructors only: never publish it.")
 

@@ -123,7 +123,7 @@ def _read(path: Path) -> Course:
         raise AuthorError(
             f"{path}: the settings are title, {', '.join((*TEXTS, *DEFAULTS))} (all "
             "strings) and roster (true or false)"
-            + (f"; what is {unknown[0]!r}?" if unknown else ".")
+            + (f", but not {unknown[0]!r}." if unknown else ".")
         )
     places = {name: path.parent / said.get(name, default) for name, default in DEFAULTS.items()}
     others = {name: said.get(name, "") for name in TEXTS}

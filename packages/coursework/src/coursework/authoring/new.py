@@ -52,7 +52,7 @@ FILES = {
     "course.toml": 'title = "{title}"\n',
     "requirements.txt": "--find-links wheels\ncoursework-tools\njupyterlab\npytest\n",
     ".gitignore": "build/\n.coursework/\n.ipynb_checkpoints/\n__pycache__/\n",
-    "tests/test_course.py": '''"""Every question is tried, and what is released is up to date."""
+    "tests/test_course.py": '''"""Test every question, and that what is released is up to date."""
 
 import pytest
 

@@ -81,7 +81,10 @@ def publish(course: Course, site: str | Path, room: bool = False) -> Path:
     site = Path(site).resolve()
     make = _maker()
     if site.exists() and any(site.iterdir()) and not (site / "index.html").is_file():
-        raise AuthorError(f"{site} exists and is not a site; we changed nothing.")
+        raise AuthorError(
+            f"{site} contains files but no index.html, so it is not a site. We changed nothing. "
+            "Give another folder with --site."
+        )
     if not any(course.exercises.glob("*.ipynb")):
         raise AuthorError(
             f"There are no exercises in {course.exercises}. Build them with `coursework release`."

@@ -494,7 +494,7 @@ def write_page(
         f"faults. {number_of(sum(len(f.mistakes) for f in findings), 'mistake')} recognised.</p>"
         "<p>The second-to-last column counts the possible answers where an answer is a few words, "
         "an ordering or small whole numbers, since a program can try them all. A program that "
-        "builds formulas finds more.</p>"
+        "builds formulas can find more.</p>"
         f"{before}{'' if leaked is None else leaks_found}<h2>Questions</h2><table><thead><tr>"
         + "".join(f'<th scope="col">{head}</th>' for head in COLUMNS)
         + f"</tr></thead><tbody>{''.join(rows)}</tbody></table></html>"

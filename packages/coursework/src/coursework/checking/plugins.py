@@ -68,8 +68,8 @@ def kinds() -> dict[str, Kind]:
         for name, kind in getattr(plugin, "KINDS", {}).items():
             if name in all_kinds:
                 raise RuntimeError(
-                    f"{plugin.__name__} provides a kind of question named {name!r}, but there "
-                    "is one already."
+                    f"{plugin.__name__} provides a kind of question named {name!r}, but another "
+                    "kind already has that name."
                 )
             all_kinds[name] = kind
     return all_kinds

@@ -134,7 +134,7 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
         else:
             beside = _put_beside(place, data, before)
             now[beside] = now[name]
-            report.append(f"kept yours  {name}, and put the new one in {beside}")
+            report.append(f"kept yours  {name}, and put the new version in {beside}")
     (folder / MANIFEST).write_text(_as_text(files={**before, **now}, archives=archives), "utf8")
     if to_install:
         command = [

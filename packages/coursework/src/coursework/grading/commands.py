@@ -341,8 +341,8 @@ def _bring_in_decisions(out: str, yes: bool) -> None:
         _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
     except ValueError as error:
         sys.exit(
-            f"Your decisions are saved, but we could not apply them yet: {error} Once "
-            f"that is done, run `coursework regrade {out}`."
+            f"Your decisions are saved, but we could not apply them yet: {error} Solve "
+            f"this problem, and then run `coursework regrade {out}`."
         )
 
 
@@ -415,8 +415,8 @@ def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes
     missing = [path for path in files if not Path(path).is_file()]
     if missing:
         sys.exit(
-            f"coursework merge: {missing[0]} does not exist. A grader without decisions has no "
-            "journal, so leave it out."
+            f"coursework merge: {missing[0]} does not exist. A grader who has made no decisions "
+            "has no journal; in that case, leave this file out."
         )
     journal, store = Journal(Path(out), dry_run), Store(out)
     for path in files:

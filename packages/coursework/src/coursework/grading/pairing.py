@@ -438,5 +438,8 @@ def put_renamed_aside(
                 journal.hand_on(student, assignment, names[0])
                 said += f" We also moved {number_of(len(decisions), 'decision')} to the new name."
             elif decisions:
-                said += f" Whose are its decisions ({len(decisions)})? They no longer count."
+                said += (
+                    f" Its decisions ({len(decisions)}) no longer count, because we do not know "
+                    "which of these students they belong to."
+                )
             yield said

@@ -46,7 +46,10 @@ class Store:
             try:
                 lock(self.lock, wait=False)
             except BlockingIOError:
-                raise InUse(f"Another run is using {self.folder}.") from None
+                raise InUse(
+                    f"Another run is using {self.folder}. Wait until it has finished, and then run "
+                    "the command again."
+                ) from None
             for path in self.folder.rglob(".half-*"):
                 path.unlink()
             try:

@@ -195,8 +195,8 @@ def classify(cells):
                 needs.add("numpy")
             if not needs and known:
                 raise RuntimeError(
-                    f"in the page, cell {position + 1} gives a result other than the stored one "
-                    "(if that is out of date, run `make "
+                    f"in the page, cell {position + 1} gives a result that differs from the stored "
+                    "one (if the stored one is out of date, run `make "
                     f"notebooks`):\n{cell.source}\n{outcome.get('traceback', report['messages'])}"
                 )
         tags = cell.metadata.get("tags", [])

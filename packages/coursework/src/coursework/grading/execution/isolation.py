@@ -579,5 +579,8 @@ def lacking(report: Report) -> list[str]:
             f"{layer} ({report['layers'][layer]['why not']}): {HOW_TO_GET[layer]}"
             for layer in missing
         )
-        lines.append(f"student code could {name}. Missing: {reasons or 'no layer stopped it'}")
+        lines.append(
+            f"student code could {name}. "
+            + (f"Missing: {reasons}" if missing else "No layer of isolation stopped it")
+        )
     return lines

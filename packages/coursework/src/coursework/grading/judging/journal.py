@@ -929,6 +929,6 @@ def _credit(text: str, where: str) -> float | None:
         return share
     except ValueError:
         raise ValueError(
-            f"{where}: credit must be a number from 0 to 1, and a tick the letter of a box, "
-            f"not {text!r}."
+            f"{where}: {text!r} is neither a credit from 0 to 1 nor, as a tick, the letter of a "
+            "box on the marking sheet."
         ) from None

@@ -294,7 +294,7 @@ def take_in(
                     if name.lower().endswith(ARCHIVES)
                     else "Not a notebook: its name does not end in .ipynb."
                 )
-                can = " The notebook in its folder can read it." if source in have else ""
+                can = " The notebook in the same folder can read it." if source in have else ""
                 refused.append(Refused(name, whose, why + can))
     return notebooks, [_of_whom(one, layout, roster) for one in refused]
 

@@ -366,8 +366,8 @@ def hint(error, name):
     if isinstance(error, ModuleNotFoundError) and "." not in (error.name or "."):
         return (
             f"\n\n{error.name} is not part of this page's Python, and nothing can be installed "
-            "here: it has the standard library, SymPy, and what this book's own cells use. Check "
-            "the spelling, or download the notebook and run it in your own Jupyter."
+            "here. This page has the standard library, SymPy, and what this book's own cells use. "
+            "Check the spelling, or download the notebook and run it in your own Jupyter."
         )
     if not isinstance(error, SyntaxError) or error.filename != name:
         return ""
