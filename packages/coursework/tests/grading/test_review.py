@@ -351,7 +351,7 @@ def test_the_commands(out, capsys, tmp_path, graded):
     Journal(other).add(found, "turns/sum", 0, who="Bea")
     main(["merge", str(out), str(other / "journal.jsonl")])
     assert ": 1 decision." in capsys.readouterr().out.splitlines()[0]
-    with pytest.raises(SystemExit, match="does not exist.*without decisions"):
+    with pytest.raises(SystemExit, match="does not exist.*made no decisions"):
         main(["merge", str(out), str(tmp_path / "none")])
 
 
