@@ -13,17 +13,17 @@ x, y = sm.symbols("x y")
 q = dynamicsymbols("q")
 t = dynamicsymbols._t
 FACTORS = {
-    "2": 2,
-    "one half": sm.Rational(1, 2),
-    "3": 3,
-    "one third": sm.Rational(1, 3),
-    "4": 4,
-    "one quarter": sm.Rational(1, 4),
+    "2": (2, "twice"),
+    "one half": (sm.Rational(1, 2), "half"),
+    "3": (3, "three times"),
+    "one third": (sm.Rational(1, 3), "a third of"),
+    "4": (4, "four times"),
+    "one quarter": (sm.Rational(1, 4), "a quarter of"),
 }
 
 
 def factors(answer):
-    return [("factor", {"factor": name}, factor * answer) for name, factor in FACTORS.items()]
+    return [("factor", {"factor": name}, factor * answer) for name, (factor, _) in FACTORS.items()]
 
 
 def symbols(answer):
@@ -217,7 +217,7 @@ def _with_symbols(question):
 
 
 def _word(name, value):
-    return NUMBERS[value] if name == "number" else str(value)
+    return NUMBERS[value] if name == "number" else str(FACTORS.get(value, (0, value))[1])
 
 
 def _same(left, right):

@@ -37,7 +37,7 @@ def _by_short_name(name: str, symbols: tuple[str, ...]) -> dict[bytes, Note]:
         "symbol": symbols,
         "first": symbols,
         "second": symbols,
-        "factor": [name for name, _ in FACTORS],
+        "factor": tuple(FACTORS),
         "number": range(len(NUMBERS)),
     }
     by_name: dict[bytes, Note] = {}

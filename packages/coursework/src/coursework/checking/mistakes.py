@@ -21,15 +21,15 @@ from .fields import Json
 from .question import Question
 from .sealing import MISTAKE
 
-# Factors that are forgotten or inserted twice, with their words.
-FACTORS = (
-    ("2", "2"),
-    ("one half", "1/2"),
-    ("3", "3"),
-    ("one third", "1/3"),
-    ("4", "4"),
-    ("one quarter", "1/4"),
-)
+# Factors that are forgotten or inserted twice, by their names in lockers, with their words.
+FACTORS = {
+    "2": ("2", "twice"),
+    "one half": ("1/2", "half"),
+    "3": ("3", "three times"),
+    "one third": ("1/3", "a third of"),
+    "4": ("4", "four times"),
+    "one quarter": ("1/4", "a quarter of"),
+}
 NUMBERS = (
     "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen "
     "sixteen seventeen eighteen nineteen twenty"
@@ -60,10 +60,12 @@ MESSAGES: dict[str, Callable[..., str]] = {
     "symbols interchanged": lambda question, first, second: (
         f"You swapped `{first}` and `{second}`."
     ),
-    "opposite": lambda question: "Every sign is wrong: this is minus what the question asks for.",
+    "opposite": lambda question: (
+        "Every sign is wrong: this is the negative of what the question asks for."
+    ),
     "reciprocal": lambda question: "This is the reciprocal of what the question asks for.",
     "factor": lambda question, factor: (
-        f"This is {factor} times what the question asks for. The rest is right."
+        f"This is {FACTORS[factor][1]} what the question asks for. Only this factor is wrong."
     ),
     "one wrong": lambda question, number: (
         f"One of the {NUMBERS[number]} is wrong. The others are right."
@@ -191,7 +193,7 @@ def of_measurement(question: Question, answer: Any, turns: Any, turned: Any) -> 
 
 def of_factors(answer: Any) -> Iterator[Mistake]:
     """Iterate over the answer times a small factor."""
-    for name, factor in FACTORS:
+    for name, (factor, _) in FACTORS.items():
         yield Mistake("factor", {"factor": name}, sympy.Rational(factor) * answer)
 
 
