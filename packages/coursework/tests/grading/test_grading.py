@@ -52,7 +52,7 @@ from coursework.grading.record import Answer
 from coursework.grading.reporting import pages
 from coursework.grading.reporting.reports import write_all
 from coursework.grading.running import Running
-from coursework.grading.store import InUse, Store, file_name
+from coursework.grading.store import Store, file_name
 from coursework.grading.submissions import languages
 from coursework.grading.submissions.roster import Roster
 from coursework.grading.tables import as_cell, as_written, table
@@ -710,11 +710,6 @@ def test_feedback_gives_no_outputs_of_calls_away(course):
     assert "in place of" not in page(course, "blank") and "Nothing was answered." in page(
         course, "blank"
     )
-
-
-def test_two_runs_on_one_folder_are_refused(course, copied):
-    with Store(copied).locked(), pytest.raises(InUse):
-        grade_quietly(course / "submissions", copied, course / "solutions")
 
 
 class Stub:

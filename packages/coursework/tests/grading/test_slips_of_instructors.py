@@ -70,6 +70,8 @@ def test_a_full_disk_is_said_in_a_sentence_and_the_next_run_goes_on(course, monk
         with pytest.raises(SystemExit, match="coursework grade: No space left on device") as found:
             main(command)
     assert "Traceback" not in str(found.value) + capsys.readouterr().err
+    with Store(course / "out").locked(), pytest.raises(SystemExit, match="Wait until it has fin"):
+        main(command)
     main(command)
     assert {record.points for record in Store(course / "out").all()} == {5}
 

@@ -514,9 +514,8 @@ def _demand_sources(course: Course, known: Collection[str]) -> None:
     ]
     if others:
         raise AuthorError(
-            f"{others[0]} was not made from any notebook in {course.sources}"
-            + (f", nor were {len(others) - 1} other files" if others[1:] else "")
-            + ". We changed nothing. Delete the files you no longer want, or name other folders."
+            f"No notebook in {course.sources} makes {', '.join(map(str, others))}. We changed "
+            "nothing. Delete the files you no longer want, or name other folders."
         )
 
 

@@ -149,9 +149,26 @@ def names_asked(path: str | Path) -> dict[str, str]:
     """The names of the questions of a notebook with solutions, and the
     variable of each; nothing is run.
     """
+    return checked_in(
+        "".join(cell["source"]) for cell in cells_of(path) if cell["cell_type"] == "code"
+    )
+
+
+def cells_of(path: str | Path) -> list[dict[str, Any]]:
+    """The cells of a notebook with solutions, as they are in its file.
+
+    Raises
+    ------
+    AuthorError
+        It is not a notebook, such as after a merge with conflicts.
+    """
     # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
-    cells = json.loads(Path(path).read_text("utf8"))["cells"]
-    return checked_in("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+    try:
+        return list(json.loads(Path(path).read_text("utf8"))["cells"])
+    except (ValueError, LookupError, TypeError) as error:
+        raise author.AuthorError(
+            f"{path} is not a notebook that we can read ({error}). Restore it, or delete it."
+        ) from None
 
 
 def read_source(
@@ -185,6 +202,7 @@ def read_source(
     import nbformat
 
     path = Path(path)
+    cells_of(path)  # nbformat would not say which file it cannot read
     notebook = nbformat.read(path, as_version=4)
     for number, cell in enumerate(notebook.cells):
         cell.source = cell.source.replace("\r\n", "\n")  # as some editors of Windows write it

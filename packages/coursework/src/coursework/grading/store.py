@@ -20,7 +20,7 @@ from .record import Record
 REFUSED = "refused.json"
 
 
-class InUse(RuntimeError):
+class InUse(ValueError):
     """Another run works on the same folder."""
 
 

@@ -669,7 +669,7 @@ def _files_of_archive(path: str, refused: list[Refused], repositories: set[str])
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
         raise Unfit(f"{path} is not a zip archive, or it is damaged ({error}).") from None
     repositories.update(
-        _shown(entry).partition("/.git/")[0] for entry in entries if "/.git/" in entry.filename
+        entry.filename.partition("/.git/")[0] for entry in entries if "/.git/" in entry.filename
     )
     unpacked = 0
     for shown, entry in _readable(entries, refused):
@@ -691,16 +691,13 @@ def _read_of_class(path: str, entry: zipfile.ZipInfo) -> bytes:
 
 
 def _entries(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
-    """The entries of an archive, sorted by name, with a slash between folders:
-    PowerShell 5 and other programs on Windows write a backslash there.
+    """The entries of an archive, sorted by name. Each name is text that can be written, with a
+    slash between folders: PowerShell 5 and other programs on Windows write a backslash there.
     """
     for entry in archive.infolist():
-        entry.filename = entry.filename.replace("\\", "/")
+        name = entry.filename.replace("\\", "/")
+        entry.filename = name.encode("utf8", "backslashreplace").decode("utf8")
     return sorted(archive.infolist(), key=lambda entry: entry.filename)
-
-
-def _shown(entry: zipfile.ZipInfo) -> str:
-    return entry.filename.encode("utf8", "backslashreplace").decode("utf8")
 
 
 def _readable(
@@ -711,7 +708,7 @@ def _readable(
     for entry in entries:
         if entry.is_dir() or _is_litter(entry.filename):
             continue
-        shown, why = folder + _shown(entry), _why_not_unpacked(entry)
+        shown, why = folder + entry.filename, _why_not_unpacked(entry)
         if names[entry.filename] > 1:
             why = "The archive contains this name more than once."
         if why:
