@@ -595,11 +595,15 @@ def symbol_components(value: Values, item: tuple[int, ...], name: str) -> list[E
 
 
 def _shape_message(name: str, shape: tuple[int, ...], item: tuple[int, ...]) -> str:
-    if item == ():
-        return f"{name} has shape {shape}, where one number was expected"
-    return (
-        f"{name} has shape {shape}, where {item} or (..., {', '.join(map(str, item))}) was expected"
+    expected = f"{item} or (..., {', '.join(map(str, item))})" if item else "one number"
+    cause = (
+        " (put the batch first: numpy.moveaxis(value, -1, 0))"
+        if item and shape[: len(item)] == item
+        else " (take the rotation out of each pose: value[..., :3, :3])"
+        if item == (3, 3) and shape[-2:] in ((3, 4), (4, 4))
+        else ""
     )
+    return f"{name} has shape {shape}, where {expected} was expected{cause}"
 
 
 # --- the functions that a formula may use, for each kind ----------------------------------------
