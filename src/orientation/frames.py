@@ -300,7 +300,10 @@ class Frames:
                 raise ValueError(f"no frame named {name!r} in this Frames(): {known}")
         edges = self._walk(target, source)
         if edges is None:
-            raise ValueError(f"no path of orientations connects {target} and {source}")
+            raise ValueError(
+                f"no path of orientations connects {target} and {source}. First orient one of them "
+                "with respect to the other, or to a frame connected with it"
+            )
         return edges
 
     def path(self, target: str, source: str) -> str:

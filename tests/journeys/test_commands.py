@@ -58,7 +58,7 @@ def test_a_student_who_asks_for_an_author_s_command_is_told_what_to_install(tmp_
     )
     output = run(f'cd {tmp_path} && "$PYTHON" -m coursework new first-course')
     assert "invalid choice: 'new'" in output
-    assert "install coursework-tools\nbeside coursework-checks" in output
+    assert "install coursework-tools\nas well as coursework-checks" in output
 
 
 def test_an_author_without_the_extra_is_told_which(tmp_path):

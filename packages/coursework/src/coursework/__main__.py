@@ -16,7 +16,7 @@ from . import __version__
 ROOMS = ("authoring", "grading")
 _STUDENTS_USAGE = """%(prog)s [-h] COMMAND ...
 For the commands of authors and instructors, such as new and grade, install coursework-tools
-beside coursework-checks."""
+as well as coursework-checks."""
 
 
 @contextmanager

@@ -300,7 +300,9 @@ def read_source(
                 figures[number] = value
     unasked = sorted((set(answers) if not variant and only is None else set()) - set(questions))
     if unasked:
-        raise author.AuthorError(f"{path.name}: checks without a question: {', '.join(unasked)}.")
+        raise author.AuthorError(
+            f"{path.name}: these checks have no question: {', '.join(unasked)}."
+        )
     variables = checked_names(notebook)
     names = list(variables.values())
     if twice := sorted({name for name in names if names.count(name) > 1}):

@@ -723,8 +723,8 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> str:
         name = f"{record.reply}feedback-{file_name(record.assignment).replace('_', '-')}.html"
         if name in pages:
             raise CannotExport(
-                f"Two feedback pages would have the name {name!r}. Grade again with a roster in "
-                "term.toml."
+                f"Two feedback pages would have the name {name!r}, so one would replace the other. "
+                "Grade again with a roster in term.toml."
             )
         pages[name] = page
     packed = io.BytesIO()
