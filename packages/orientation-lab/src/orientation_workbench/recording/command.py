@@ -31,9 +31,13 @@ def run(chosen: Namespace) -> int:
         if bad := [
             str(file)
             for file in filter(None, (chosen.html, chosen.csv))
-            if file.is_dir() or not file.parent.is_dir()
+            if file.is_dir()
+            or not file.parent.is_dir()
+            or file.resolve() in (Path(name).resolve() for name in chosen.files)
         ]:
-            raise ValueError(f"cannot write {bad[0]}: name a file in a folder that exists")
+            raise ValueError(
+                f"cannot write {bad[0]}: name a file in a folder that exists, not the recording"
+            )
         if shown:
             print("reading", end="", file=sys.stderr, flush=True)
         source, name = (

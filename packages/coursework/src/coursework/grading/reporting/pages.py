@@ -35,7 +35,7 @@ section.question { border: 1px solid var(--rule); border-left: .35rem solid var(
 .undecided, .decided { border-left-color: var(--open) !important; } .undecided .verdict, .decided .verdict { color: var(--open); }
 code, pre { font-family: ui-monospace, "SF Mono", Menlo, Consolas, "DejaVu Sans Mono", monospace; font-size: .84em; overflow-wrap: anywhere; }
 pre { white-space: pre-wrap; margin: .3rem 0 0; }
-.scroll { overflow-x: auto; }
+.scroll { overflow: auto hidden; padding-block: .2em; }
 table { border-collapse: collapse; width: 100%; font-size: .94rem; }
 th, td { text-align: left; vertical-align: top; padding: .35rem .8rem .35rem 0; border-bottom: 1px solid var(--rule); }
 td.number, th.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
