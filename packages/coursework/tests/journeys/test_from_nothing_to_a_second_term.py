@@ -172,7 +172,7 @@ def test_a_sitting_of_a_class(run, tmp_path, monkeypatch):
     # A letter that no box has enters nothing. Each box is worth what it says.
     merge = "merge marks marks/sittings/quiz/ticks.csv --grader Ann"
     ticked(place / "ticks.csv", area=lambda student: "Q", slope=lambda student: "A")
-    assert "the letter of a box, not 'Q'" in run(merge, fails=True)
+    assert "'Q' is neither a credit from 0 to 1 nor the letter of a box" in run(merge, fails=True)
     ticked(
         place / "ticks.csv", area=lambda name: "b" if name < "s-10" else "A", slope=lambda _: "A"
     )

@@ -929,6 +929,5 @@ def _credit(text: str, where: str) -> float | None:
         return share
     except ValueError:
         raise ValueError(
-            f"{where}: {text!r} is neither a credit from 0 to 1 nor, as a tick, the letter of a "
-            "box on the marking sheet."
+            f"{where}: {text!r} is neither a credit from 0 to 1 nor the letter of a box to tick."
         ) from None
