@@ -258,7 +258,7 @@ def _table_of_ticks(path: Path, people: Sequence[tuple[Record, list[Asked]]]) ->
     if path.exists():
         header, lines = cells_in(path)
         columns = [header.index(column) for column in ("tick", "credit", "comment")]
-        ticked = {cells[0]: [cells[column] for column in columns] for _, cells in lines}
+        ticked = {cells[0].lstrip("#"): [cells[column] for column in columns] for _, cells in lines}
 
     def rows() -> Iterator[list[object]]:
         for record, asked in people:
@@ -266,8 +266,8 @@ def _table_of_ticks(path: Path, people: Sequence[tuple[Record, list[Asked]]]) ->
                 line = case_id(record, question)
                 says = [f"{number(box.share)}: {plain_text(box.says)}" for box in about.boxes]
                 yield [
-                    line,
-                    mark.version,
+                    f"#{line}",
+                    f"#{mark.version}",
                     record.student,
                     question,
                     *ticked.get(line, ["", "", ""]),

@@ -758,12 +758,12 @@ class Journal:
             if credit is None:
                 continue
             where = f"line {number}, {as_written(row.get('student', '')) or row['id']}"
-            if row["id"] not in cases:
+            if row["id"].lstrip("#") not in cases:
                 unused.append(
                     f"{where}: we do not have this answer. Perhaps the student has handed in again"
                 )
                 continue
-            record, question = cases[row["id"]]
+            record, question = cases[row["id"].lstrip("#")]
             there = standing.get((record.student, record.assignment, question))
             if there and there.answer == digest_of_answer(record, question):
                 if there.who != who:
@@ -784,7 +784,7 @@ class Journal:
                     comment=row.get("comment", ""),
                     rubric=[words] if words else [],
                     why=why,
-                    contract=row["version"],
+                    contract=row["version"].lstrip("#"),
                 )
             )
         if wanted:

@@ -183,6 +183,7 @@ def write_moves(laboratory: Laboratory, folder: Path) -> None:
 
 
 #: Filled in, it is a table of decisions: ``id`` and ``version`` bind each line to what it is about.
+#: Without the sign in front, a spreadsheet would read a digest such as 2389540731e5 as a number.
 UNDECIDED = (
     "id", "version", "student", "question", "credit", "comment", "worth", "why", "message", "answer"
 )  # fmt: skip
@@ -193,8 +194,8 @@ def _undecided_of(records: Iterable[Record]) -> Iterator[tuple[object, ...]]:
         for name, mark in record.marks.items():
             if mark.outcome == "undecided":
                 yield (
-                    case_id(record, name),
-                    mark.version,
+                    f"#{case_id(record, name)}",
+                    f"#{mark.version}",
                     record.student,
                     name,
                     "",
