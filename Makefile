@@ -90,13 +90,14 @@ take-away: $(VENV)/ready-print book
 numpy: setup
 	@$(RUN) -m notebook_pages.live.fetch _build/numpy
 
-# AFTER names the chapter that the new one follows. We release the new chapter's exercises, so that the book builds.
+# AFTER names the chapter that the new one follows. The shell reads what you gave from its environment,
+# so a title may contain quotation marks. We release the new chapter's exercises, so that the book builds.
 new-chapter: setup
-	@$(RUN) -m tools.new chapter "$(NAME)" "$(TITLE)" $(if $(AFTER),--after "$(AFTER)")
-	@$(RUN) -m coursework release "$(NAME)" chapters
+	@$(RUN) -m tools.new chapter "$$NAME" "$$TITLE" $(if $(AFTER),--after "$$AFTER")
+	@$(RUN) -m coursework release "$$NAME" chapters
 
 new-question: setup
-	@$(RUN) -m tools.new question "$(NAME)" "$(TITLE)" $(if $(KIND),--kind "$(KIND)")
+	@$(RUN) -m tools.new question "$$NAME" "$$TITLE" $(if $(KIND),--kind "$$KIND")
 
 check: $(VENV)/ready-test setup
 	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/test_budget.py tests/chapters/test_chapters.py
