@@ -52,6 +52,24 @@ def test_numbers_of_a_figure_are_copied_as_programs_read_them(page, site):
     assert set(copied(page, ".moving[data-ready] .readouts")) & set(".\u2212\u2007") == {"."}
 
 
+def test_text_is_copied_with_the_code_below_it_and_no_buttons(page, site):
+    """Press in a paragraph, and release in the second cell below it."""
+    page.goto(site + "exercises/simple-orientations.html")
+    page.wait_for_function(SETTLED)
+    check = page.locator(".cell_input").filter(has_text="skier', weight")
+    check.evaluate("(box) => box.scrollIntoView({ block: 'center', behavior: 'instant' })")
+    page.wait_for_timeout(500)
+    text = page.locator("p").filter(has_text="Set weight")
+    for place, left, press in ((text, 1, page.mouse.down), (check, 340, page.mouse.up)):
+        box = place.bounding_box()
+        page.mouse.move(box["x"] + left, box["y"] + box["height"] / 2)
+        press()
+    page.keyboard.press("Control+c")
+    lines = page.evaluate("navigator.clipboard.readText()").split("\n")
+    assert "three components" in lines[0] and lines[1:3] == ["", "weight = ...  # your answer"]
+    assert "Run" not in lines
+
+
 def test_part_of_a_formula_is_copied_as_the_whole_formula(page, site):
     open_chapter(page, site)
     text = copied(page, "article p .katex > :last-child")

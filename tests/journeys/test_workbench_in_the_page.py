@@ -76,3 +76,25 @@ def test_a_mistake_is_told_and_mended(page):
     answer(page).get_by_text("Not readable yet").wait_for()
     paste(page, FLU, FRD)
     answer(page).get_by_text("None of these?").wait_for()
+
+
+def test_a_dropped_file_goes_into_the_field_or_to_the_bench(page, tmp_path):
+    """Nowhere on the page, once the bench is near, does it open in place of the page."""
+    file = tmp_path / "poses.txt"
+    file.write_text("0.5 0.5 0.5 0.5\n", "utf8")
+    devices = page.context.new_cdp_session(page)
+    field = page.get_by_label("What the first program gives")
+    bench = page.get_by_text("How far can you trust a file")
+    for place, shown in (
+        (field, answer(page).get_by_text("The first side has 1 pose")),
+        (bench, page.get_by_text("Not run here: NumPy could not be fetched").last),
+    ):
+        place.evaluate("(box) => box.scrollIntoView({ block: 'center', behavior: 'instant' })")
+        page.wait_for_timeout(1000)
+        box = place.bounding_box()
+        data = {"items": [], "files": [str(file)], "dragOperationsMask": 1}
+        point = {"x": box["x"] + 20, "y": box["y"] + box["height"] / 2}
+        for kind in ("dragEnter", "dragOver", "drop"):
+            devices.send("Input.dispatchDragEvent", {"type": kind, **point, "data": data})
+        shown.wait_for()
+    assert len(page.context.pages) == 1

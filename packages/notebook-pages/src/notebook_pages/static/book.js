@@ -105,7 +105,7 @@ const watch = new ResizeObserver((entries) => {
 window.watchWidth = (box) => watch.observe(box); // also for the theme's boxes, and what a page puts out later
 document.querySelectorAll(".math-box, figure.orientation-figure").forEach(watchWidth);
 
-// A formula is copied as its TeX, not as its drawing and its words for the ear, and a number as programs read it.
+// A formula is copied as its TeX, not as its drawing and its words for the ear, a number as programs read it, a button not.
 document.addEventListener("copy", (event) => {
   const chosen = getSelection();
   if (event.defaultPrevented || chosen.isCollapsed) return;
@@ -116,14 +116,15 @@ document.addEventListener("copy", (event) => {
   if (last) range.setEndAfter(last);
   const copy = document.createElement("div");
   copy.append(range.cloneContents());
-  const formulas = copy.querySelectorAll(".katex");
-  if (!formulas.length && !/[\u2007\u2212]/.test(chosen)) return;
+  const formulas = copy.querySelectorAll(".katex"), buttons = copy.querySelectorAll(".run-cell, .to-original, details.hide > summary");
+  if (!formulas.length && !buttons.length && !/[\u2007\u2212]/.test(chosen)) return;
+  for (const button of buttons) button.remove();
   for (const formula of formulas) {
     const fence = formula.parentElement.matches(".katex-display") ? "$$" : "$";
     formula.replaceWith(fence + (formula.dataset.tex ?? formula.querySelector("annotation").textContent) + fence);
   }
   document.body.append(copy); // so that the browser knows where its lines end
-  const shown = (formulas.length ? copy.innerText : String(chosen)).replaceAll("\u2007", " ");
+  const shown = (formulas.length || buttons.length ? copy.innerText : String(chosen)).replaceAll("\u2007", " ");
   event.clipboardData.setData("text/plain", shown.replace(/\u2212(?=[\d.])/g, "-"));
   event.clipboardData.setData("text/html", copy.innerHTML);
   copy.remove();

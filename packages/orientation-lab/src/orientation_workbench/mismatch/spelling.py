@@ -63,6 +63,11 @@ SPELLING = {
     # Of whole files in which numbers mean nothing without the rest: what to cut out of them.
     "cut out": (
         (
+            r"(?:^|[\s;,|])#(?:[a-z/0]+[!?]|n/a|nv)",
+            "a table in which a cell holds an error, such as #N/A or #VALUE!. Leave out that row "
+            "on both sides",
+        ),
+        (
             r"^\s*HIERARCHY\b[\s\S]*^\s*MOTION\b",
             "a whole BVH file. From a line below MOTION, paste only the three angles of one joint, "
             "and give their sequence, from the joint's CHANNELS line",

@@ -280,17 +280,19 @@ class Page {
     const field = Object.assign(element("input"), { type: "file", multiple: true });
     box.prepend(element("label", "takes-file", "Choose a file, or drop it here. It stays in this page: ", field));
     field.addEventListener("change", () => this.give(cell, [...field.files]));
-    box.addEventListener("dragover", (event) => (event.preventDefault(), box.classList.add("taking")));
-    box.addEventListener("dragleave", () => box.classList.remove("taking"));
-    box.addEventListener("drop", (event) => {
+    // A file that misses the cell would open in the place of this page.
+    const taking = (event) => {
+      if (event.defaultPrevented || !event.dataTransfer.types.includes("Files")) return;
       event.preventDefault();
-      box.classList.remove("taking");
-      this.give(cell, [...event.dataTransfer.files]);
-    });
+      box.classList.toggle("taking", event.type === "dragover");
+      if (event.type === "drop") this.give(cell, [...event.dataTransfer.files]);
+    };
+    for (const name of ["dragover", "dragleave", "drop"]) addEventListener(name, taking);
   }
 
   async give(cell, files) {
     if (!files.length) return;
+    cell.box.scrollIntoView({ block: "nearest" });
     this.files = await Promise.all(files.map(async (file) => [file.name, new Uint8Array(await file.arrayBuffer())]));
     if (this.has) this.python?.put(this.files);
     cell.ran = false;

@@ -15,6 +15,7 @@ import itertools
 import math
 import operator
 import sys
+import traceback
 import types
 
 MOST_WORK = 4_000_000  # entries that one cell may make, which takes some seconds in a browser
@@ -182,11 +183,15 @@ def is_fetched():
 
 
 def is_at_fault(error):
-    """Whether the message of an error mentions the stand-in.
+    """Whether an error mentions the stand-in, or comes from SymPy's lookup of NumPy's functions.
 
     The real NumPy may have another message or raise no error.
     """
-    return any(
+    looked_up = isinstance(error, KeyError) and any(
+        place.filename.endswith("sympy/utilities/lambdify.py")
+        for place in traceback.extract_tb(error.__traceback__)[-1:]
+    )
+    return looked_up or any(
         f"'{kind.__name__}'" in str(error)
         for kind in (Array, Number, Integer, Truth, Generator, Part)
     )

@@ -192,6 +192,10 @@ class Shell:
         self.names["__builtins__"] = vars(builtins) | {
             "__import__": self.import_module,
             "input": cannot_ask,
+            "breakpoint": cannot_ask,
+            # Python's own functions would also close the standard input, which help() looks at.
+            "exit": sys.exit,
+            "quit": sys.exit,
             "display": display,
             "get_ipython": lambda: self,
         }
@@ -330,6 +334,7 @@ class Shell:
             last = ast.Expression(tree.body.pop().value)
         await self.evaluate(tree, name, "exec")
         if last is not None and (value := await self.evaluate(last, name, "eval")) is not None:
+            self.names["_"] = value
             self.show(value, "result")
         self.show_plots()
 
@@ -361,8 +366,20 @@ class Shell:
         }
 
 
+ONLY_PYTHON = "Commands that begin with % or ! work only in Jupyter; this page has only Python."
+COMMANDS = dict.fromkeys(
+    ("pip", "conda"),
+    "Nothing can be installed on this page. It has SymPy and this book's own packages.",
+) | dict.fromkeys(
+    ("time", "timeit"),
+    "Commands that begin with % work only in Jupyter. Here, import timeit and call timeit.timeit.",
+)
+
+
 def hint(error, name):
-    """Explain to readers why a package is missing, or that a Jupyter command is not Python."""
+    """Explain to readers what this page lacks: packages, Jupyter's commands, a program to end."""
+    if isinstance(error, SystemExit):
+        return "\n\nOn this page only the cell ends. Python and all names are still there."
     if isinstance(error, ModuleNotFoundError) and "." not in (error.name or "."):
         return (
             f"\n\n{error.name} is not part of this page's Python, and nothing can be installed "
@@ -373,27 +390,16 @@ def hint(error, name):
         return ""
     line = (error.text or "").strip()
     if line.startswith(("%", "!")):
-        command = line.lstrip("%!").split()[0] if line.lstrip("%!").split() else ""
-        if command in ("pip", "conda"):
-            return (
-                "\n\nNothing can be installed on this page. It has SymPy and "
-                "this book's own packages."
-            )
-        if command in ("time", "timeit"):
-            return (
-                "\n\nCommands that begin with % work only in Jupyter. Here, import "
-                "timeit and call timeit.timeit."
-            )
-        return (
-            "\n\nCommands that begin with % or ! work only in Jupyter; this page has only Python."
-        )
+        return "\n\n" + COMMANDS.get(line.lstrip("%!").partition(" ")[0], ONLY_PYTHON)
     if line.endswith("?") or line.startswith("?"):
         return f"\n\nThe question mark works only in Jupyter. Here, write help({line.strip('?')})"
     return ""
 
 
 def cannot_ask(prompt=""):
-    raise RuntimeError("input() does not work on this page: write the value into the code instead")
+    raise RuntimeError(
+        "input() and breakpoint() do not work on this page: write the value into the code instead"
+    )
 
 
 def ends_in_semicolon(code):

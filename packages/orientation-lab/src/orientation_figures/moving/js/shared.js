@@ -16,8 +16,7 @@ const OWN_KEYS = 'data-lm-suppress-shortcuts';
 // In text fields JupyterLab cancels Enter nevertheless, so there the events of keys must not propagate.
 const TAKES_TEXT = 'textarea, input:is([type=text], [type=number])';
 
-// Create an element with attributes (functions are event listeners) and children; $...$ in a text is
-// mathematics.
+// Create an element with attributes (functions are event listeners) and children; $...$ in a text is mathematics.
 export function element(tag, attributes = {}, ...children) {
   const made = DRAWN.has(tag) ? document.createElementNS('http://www.w3.org/2000/svg', tag) : document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -35,8 +34,7 @@ export function put(target, name, value) {
   if (target.getAttribute(name) !== value) target.setAttribute(name, value);
 }
 
-// The same for the text of an element. It keeps its only text node, because a new one would be laid out
-// again.
+// The same for the text of an element. It keeps its only text node, because a new one would be laid out again.
 export function write(target, text) {
   if (!target.firstChild) target.append(text);
   else if (target.firstChild.data !== text) target.firstChild.data = text;
@@ -416,8 +414,7 @@ export function numberTable({ name, names, rows, columns, light, kind = '' }) {
   })) };
 }
 
-// Text under the figure. It changes at once on the screen, and is read aloud when it has not changed for a
-// while.
+// Text under the figure. It changes at once on the screen, and is read aloud when it has not changed for a while.
 export function liveText() {
   const seen = element('p', { class: 'words', 'aria-hidden': 'true' }), heard = element('p', { class: 'unseen', role: 'status' });
   let now = null, wait = 0;

@@ -47,7 +47,15 @@ export function render({ model, el }) {
   const answered = (...declare) => Object.fromEntries(['first_is', 'second_is'].map((name, k) => [name, { ...model.get(name), ...declare[k] }]));
   const sides = ['first', 'second'].map((side, k) => {
     const field = element('textarea', { rows: 5, spellcheck: 'false', 'aria-label': `What the ${side} program gives`,
-      input: () => change(model, { [side]: field.value, ...answered(UNANSWERED, UNANSWERED) }) });
+      input: () => change(model, { [side]: field.value, ...answered(UNANSWERED, UNANSWERED) }),
+      // A browser would open a dropped file in place of the page.
+      async drop(event) {
+        const [file] = event.dataTransfer.files;
+        if (!file) return;
+        event.preventDefault();
+        field.value = await file.text();
+        field.dispatchEvent(new Event('input'));
+      } });
     const read = element('p', { class: 'read' });
     const is = (name) => model.get(`${side}_is`)[name];
     const set = (values) => change(model, { [`${side}_is`]: { ...model.get(`${side}_is`), ...values } });
