@@ -66,8 +66,6 @@ def resolve(*arguments):
             "--quiet",
             "--dry-run",
             "--ignore-installed",
-        ]
-        command += [
             "--disable-pip-version-check",
             "--only-binary=:all:",
             "--report",
@@ -204,4 +202,10 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except subprocess.CalledProcessError as error:
+        sys.exit(
+            "Nothing was written, because we could not find the newest versions: see above "
+            f"(code {error.returncode})"
+        )

@@ -59,8 +59,10 @@ def fetch_wheels():
         "--quiet",
         "--disable-pip-version-check",
         "--no-deps",
+        "--only-binary=:all:",
+        *IN_BROWSERS,
+        "--require-hashes",
     ]
-    command += ["--only-binary=:all:", *IN_BROWSERS, "--require-hashes"]
     for wheels in WHEELS:
         subprocess.run(
             [*command, "--requirement", wheels, "--dest", runtime / wheels.parent.name], check=True
