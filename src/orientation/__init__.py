@@ -1,9 +1,9 @@
 """Orientation of reference frames, for symbols, numbers and batches.
 
-Direction cosine matrices :math:`{}^A\\mathbf{C}^N` have :math:`A`'s unit vectors as rows, angles
-are in radians, quaternions have their scalar part first, and sequences are body fixed and lower
-case. Matrices, quaternions and axes in single precision are checked to that precision, and give
-results in single precision.
+Direction cosine matrices ${}^A\\mathbf{C}^N$ have $A$'s unit vectors as rows, angles are in
+radians, quaternions have their scalar part first, and sequences are body fixed and lower case.
+Matrices, quaternions and axes in single precision are checked to that precision, and give results
+in single precision.
 """
 
 from .angular_velocity import (

@@ -135,7 +135,7 @@ class Conversion(Protocol):
 
 
 class Excess(Protocol):
-    """``excess(functions, *components)`` is at most :data:`TOLERANCE` for valid input."""
+    """``excess(functions, *components)`` is at most `TOLERANCE` for valid input."""
 
     def __call__(self, f: NumberFunctions[Number], /, *components: Components) -> Number: ...
 

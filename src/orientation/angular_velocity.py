@@ -1,8 +1,7 @@
 """Orientation in motion: how the angular velocity changes each description.
 
-The angular velocity :math:`\\boldsymbol{\\omega}` of :math:`A` in :math:`N` is given by its
-components along :math:`A`, as a gyroscope that is carried by :math:`A` measures them, in radians
-per second.
+The angular velocity $\\boldsymbol{\\omega}$ of $A$ in $N$ is given by its components along $A$, as
+a gyroscope that is carried by $A$ measures them, in radians per second.
 """
 
 from __future__ import annotations
@@ -35,13 +34,13 @@ def angular_velocity_matrix(angles: Values, sequence: AxisSequence) -> Matrix: .
 def angular_velocity_matrix(angles: Values, sequence: AxisSequence) -> Array | Matrix:
     r"""Matrix that turns the rates of body fixed Euler angles into the angular velocity.
 
-    .. math::
+    $$
+    \boldsymbol{\omega}_D = \mathbf{M}\begin{bmatrix} \dot\psi & \dot\theta & \dot\varphi
+    \end{bmatrix}^T
+    $$
 
-       \boldsymbol{\omega}_D = \mathbf{M}\begin{bmatrix} \dot\psi & \dot\theta & \dot\varphi
-       \end{bmatrix}^T
-
-    Its columns are the axes of the three rotations, written along the frame :math:`D` that results.
-    At gimbal lock the first and the last column are parallel, the determinant is zero, and no rates
+    Its columns are the axes of the three rotations, written along the frame $D$ that results. At
+    gimbal lock the first and the last column are parallel, the determinant is zero, and no rates
     give an angular velocity in one of the directions.
 
     Parameters
@@ -49,7 +48,7 @@ def angular_velocity_matrix(angles: Values, sequence: AxisSequence) -> Array | M
     angles : SymPy expressions or floats ``(psi, theta, phi)``, or array of shape ``(..., 3)``
         Radians.
     sequence : str
-        One of :data:`orientation.SEQUENCES`.
+        One of `orientation.SEQUENCES`.
 
     Returns
     -------
@@ -73,7 +72,7 @@ def angular_velocity_matrix(angles: Values, sequence: AxisSequence) -> Array | M
     Notes
     -----
     Source: Kane, Likins and Levinson (1983).
-    In the book: :eq:`equation-three-rates`.
+    In the book: equation (9.1).
     """
     i, j, k, sign = layout_of(sequence)
     last = AXES.index(sequence[2])
@@ -102,18 +101,18 @@ def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Matrix: ...
 def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Array | Matrix:
     r"""Angular velocity of a direction cosine matrix that changes.
 
-    This is how the angular velocity is defined: :math:`\dot{\mathbf{C}}\mathbf{C}^T` is skew,
-    because :math:`\mathbf{C}\mathbf{C}^T = \mathbf{I}`, and
+    This is how the angular velocity is defined: $\dot{\mathbf{C}}\mathbf{C}^T$ is skew, because
+    $\mathbf{C}\mathbf{C}^T = \mathbf{I}$, and
 
-    .. math::
-
-       [\boldsymbol{\omega}]_\times =
-       -\,\frac{d\,{}^A\mathbf{C}^N}{dt}\left({}^A\mathbf{C}^N\right)^T .
+    $$
+    [\boldsymbol{\omega}]_\times =
+    -\,\frac{d\,{}^A\mathbf{C}^N}{dt}\left({}^A\mathbf{C}^N\right)^T .
+    $$
 
     Parameters
     ----------
     dcm : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^A\mathbf{C}^N`.
+        ${}^A\mathbf{C}^N$.
     rate : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
         Its time derivative, per second. If both are measured, the product is not quite skew, and
         its skew part is taken.
@@ -121,7 +120,7 @@ def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Array | Matrix:
     Returns
     -------
     SymPy column of three, array of shape ``(3,)`` or ``(..., 3)``
-        Components along :math:`A`, radians per second.
+        Components along $A$, radians per second.
 
     Raises
     ------
@@ -164,16 +163,16 @@ def dcm_rate(dcm: Values, angular_velocity: Values) -> Matrix: ...
 def dcm_rate(dcm: Values, angular_velocity: Values) -> Array | Matrix:
     r"""Time derivative of a direction cosine matrix.
 
-    .. math::
-
-       \frac{d}{dt}{}^A\mathbf{C}^N = -[\boldsymbol{\omega}]_\times\,{}^A\mathbf{C}^N
+    $$
+    \frac{d}{dt}{}^A\mathbf{C}^N = -[\boldsymbol{\omega}]_\times\,{}^A\mathbf{C}^N
+    $$
 
     Parameters
     ----------
     dcm : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^A\mathbf{C}^N`. It is not checked: an integration may have let it drift.
+        ${}^A\mathbf{C}^N$. It is not checked: an integration may have let it drift.
     angular_velocity : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
-        Components along :math:`A`, radians per second.
+        Components along $A$, radians per second.
 
     Returns
     -------
@@ -188,7 +187,7 @@ def dcm_rate(dcm: Values, angular_velocity: Values) -> Array | Matrix:
     Notes
     -----
     Source: Hughes (1986).
-    In the book: :eq:`equation-dcm-rate`.
+    In the book: equation (15.3).
     """
 
     def formula(
@@ -230,16 +229,16 @@ def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Matrix: ...
 def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Array | Matrix:
     r"""Time derivative of a quaternion.
 
-    .. math::
-
-       \dot{q} = \tfrac{1}{2}\,q\,\left(\omega_x i + \omega_y j + \omega_z k\right)
+    $$
+    \dot{q} = \tfrac{1}{2}\,q\,\left(\omega_x i + \omega_y j + \omega_z k\right)
+    $$
 
     Parameters
     ----------
     quaternion : SymPy expressions, floats or array of shape ``(4,)`` or ``(..., 4)``
         Scalar first. It is not checked: an integration may have let its length drift.
     angular_velocity : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
-        Components along :math:`A`, radians per second.
+        Components along $A$, radians per second.
 
     Returns
     -------
@@ -254,7 +253,7 @@ def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Array | Mat
     Notes
     -----
     Source: Shuster (1993).
-    In the book: :eq:`equation-quaternion-rate`.
+    In the book: equation (15.10).
     """
 
     def formula(
@@ -289,23 +288,23 @@ def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Matrix: ..
 def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Array | Matrix:
     r"""Time derivative of a rotation vector: Bortz's equation.
 
-    With :math:`\theta = |\mathbf{r}|`,
+    With $\theta = |\mathbf{r}|$,
 
-    .. math::
+    $$
+    \dot{\mathbf{r}} = \boldsymbol{\omega} + \tfrac{1}{2}\,\mathbf{r}\times\boldsymbol{\omega}
+    + \frac{1 - \frac{\theta}{2}\cot\frac{\theta}{2}}{\theta^2}\,
+    \mathbf{r}\times(\mathbf{r}\times\boldsymbol{\omega}) .
+    $$
 
-       \dot{\mathbf{r}} = \boldsymbol{\omega} + \tfrac{1}{2}\,\mathbf{r}\times\boldsymbol{\omega}
-       + \frac{1 - \frac{\theta}{2}\cot\frac{\theta}{2}}{\theta^2}\,
-       \mathbf{r}\times(\mathbf{r}\times\boldsymbol{\omega}) .
-
-    The last factor is :math:`\frac{1}{12}` at rest and grows without bound towards a whole turn,
-    :math:`\theta = 2\pi`, where this description is singular.
+    The last factor is $\frac{1}{12}$ at rest and grows without bound towards a whole turn, $\theta
+    = 2\pi$, where this description is singular.
 
     Parameters
     ----------
     vector : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
-        Rotation vector of :math:`A` in :math:`N`, radians.
+        Rotation vector of $A$ in $N$, radians.
     angular_velocity : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
-        Components along :math:`A`, radians per second.
+        Components along $A$, radians per second.
 
     Returns
     -------

@@ -56,13 +56,13 @@ def dcm_from_axis_angle(axis: Values, angle: Values) -> Matrix: ...
 def dcm_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
     r"""Direction cosine matrix of a rotation about one axis.
 
-    :math:`A` is turned with respect to :math:`N` through :math:`\theta` about the unit vector
-    :math:`\hat{e}`, whose components are the same in both frames:
+    $A$ is turned with respect to $N$ through $\theta$ about the unit vector $\hat{e}$, whose
+    components are the same in both frames:
 
-    .. math::
-
-       {}^A\mathbf{C}^N = \cos\theta\,\mathbf{I} + (1 - \cos\theta)\,\hat{e}\hat{e}^T
-       - \sin\theta\,[\hat{e}]_\times.
+    $$
+    {}^A\mathbf{C}^N = \cos\theta\,\mathbf{I} + (1 - \cos\theta)\,\hat{e}\hat{e}^T
+    - \sin\theta\,[\hat{e}]_\times.
+    $$
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def dcm_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
     Notes
     -----
     Source: the formula of Rodrigues (1840), transposed to act on components.
-    In the book: :eq:`equation-axis-angle`.
+    In the book: equation (7.2).
     """
     return evaluate(
         axis_angle_formula, (3, 3), ("axis", axis, (3,)), ("angle", angle, ()), guard=AXIS_GUARD
@@ -99,7 +99,7 @@ def dcm_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
 def axis_angle_formula(
     f: Functions[Component], x: Component, y: Component, z: Component, angle: Component
 ) -> Sequence[Component]:
-    """Formula of :func:`dcm_from_axis_angle`, for the components of the axis and the angle."""
+    """Formula of `dcm_from_axis_angle`, for the components of the axis and the angle."""
     length = f.norm(x, y, z)
     cosine = f.cos(angle)
     return turn_components(cosine, f.sin(angle) / length, (1 - cosine) / length**2, x, y, z)
@@ -108,8 +108,8 @@ def axis_angle_formula(
 def turn_components(
     cosine: Component, first: Component, second: Component, x: Component, y: Component, z: Component
 ) -> Sequence[Component]:
-    r"""Components, row by row, of :math:`c\,\mathbf{I} + s_2\,\mathbf{v}\mathbf{v}^T
-    - s_1\,[\mathbf{v}]_\times`: a turn about the vector, whose length has been divided out of
+    r"""Components, row by row, of $c\,\mathbf{I} + s_2\,\mathbf{v}\mathbf{v}^T
+    - s_1\,[\mathbf{v}]_\times$: a turn about the vector, whose length has been divided out of
     both shares.
     """
     sx, sy, sz, rx, ry = first * x, first * y, first * z, second * x, second * y
@@ -134,12 +134,12 @@ def quaternion_from_axis_angle(axis: Values, angle: Values) -> Matrix: ...
 def quaternion_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
     r"""Unit quaternion of a rotation about one axis.
 
-    .. math::
+    $$
+    q_0 = \cos\tfrac{\theta}{2}, \qquad
+    \begin{bmatrix} q_i & q_j & q_k \end{bmatrix}^T = \sin\tfrac{\theta}{2}\,\hat{e}.
+    $$
 
-       q_0 = \cos\tfrac{\theta}{2}, \qquad
-       \begin{bmatrix} q_i & q_j & q_k \end{bmatrix}^T = \sin\tfrac{\theta}{2}\,\hat{e}.
-
-    Parameters and errors are those of :func:`dcm_from_axis_angle`.
+    Parameters and errors are those of `dcm_from_axis_angle`.
 
     Returns
     -------
@@ -156,7 +156,7 @@ def quaternion_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
     Notes
     -----
     Source: Moore (2022), section "Alternatives for representing orientation"; Shuster (1993).
-    In the book: :eq:`equation-half-angle`.
+    In the book: equation (8.4).
     """
 
     def formula(
@@ -181,21 +181,21 @@ def axis_angle_components(
 def axis_angle_from_dcm(dcm: Values) -> tuple[Array, Scalars]:
     r"""Axis and angle of a direction cosine matrix.
 
-    The quaternion of the matrix is found first, and
-    :math:`\theta = 2\,\mathrm{atan2}(|\mathbf{q}_v|, |q_0|)`: exact to rounding from 0 to
-    :math:`\pi`, where the inverse cosine of the trace loses half the digits.
+    The quaternion of the matrix is found first, and $\theta = 2\,\mathrm{atan2}(|\mathbf{q}_v|,
+    |q_0|)$: exact to rounding from 0 to $\pi$, where the inverse cosine of the trace loses half the
+    digits.
 
     Parameters
     ----------
     dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^A\mathbf{C}^N`. Numbers only.
+        ${}^A\mathbf{C}^N$. Numbers only.
 
     Returns
     -------
     axis : array of shape ``(3,)`` or ``(..., 3)``
-        Unit vector; :math:`\hat{n}_x` when the frames are aligned and any axis would do.
+        Unit vector; $\hat{n}_x$ when the frames are aligned and any axis would do.
     angle : float or array of shape ``(...)``
-        Radians, from 0 to :math:`\pi`.
+        Radians, from 0 to $\pi$.
 
     Raises
     ------
@@ -213,7 +213,7 @@ def axis_angle_from_dcm(dcm: Values) -> tuple[Array, Scalars]:
 
     Notes
     -----
-    In the book: :eq:`equation-back-axis`.
+    In the book: equation (10.3).
     """
 
     def formula(f: NumberFunctions[Number], *entries: Number) -> Sequence[Number]:

@@ -113,7 +113,7 @@ def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE
     """Tell whether two direction cosine matrices, or two quaternions, are the same orientation.
 
     Symbols are compared by name, so that ``theta`` with and without assumptions, or as a function
-    of time, are one angle. The two quaternions :math:`q` and :math:`-q` are the same orientation.
+    of time, are one angle. The two quaternions $q$ and $-q$ are the same orientation.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE
 
 
 class Diagnosis(NamedTuple):
-    """Result of :func:`diagnose`: whether the answer is right, and all mix-ups that explain it."""
+    """Result of `diagnose`: whether the answer is right, and all mix-ups that explain it."""
 
     same: bool
     causes: tuple[str, ...]
@@ -207,8 +207,8 @@ def diagnose(
     Raises
     ------
     ValueError
-        As for :func:`same_orientation`; for a batch; and if ``angles`` and ``sequence`` are not
-        both given, or do not make ``expected``.
+        As for `same_orientation`; for a batch; and if ``angles`` and ``sequence`` are not both
+        given, or do not make ``expected``.
 
     Examples
     --------

@@ -5,14 +5,14 @@ A formula takes scalar components and returns scalar components. Given numbers w
 SymPy differentiates it.
 
 An orientation has three ways to change, but a direction cosine matrix has nine entries. So a matrix
-is represented here by the small rotation :math:`\\boldsymbol\\delta` that changes it,
+is represented here by the small rotation $\\boldsymbol\\delta$ that changes it,
 
-.. math::
+$$
+{}^A\\mathbf{C}^N(\\boldsymbol\\delta)
+= \\exp(-[\\boldsymbol\\delta]_\\times)\\,{}^A\\mathbf{C}^N ,
+$$
 
-   {}^A\\mathbf{C}^N(\\boldsymbol\\delta)
-   = \\exp(-[\\boldsymbol\\delta]_\\times)\\,{}^A\\mathbf{C}^N ,
-
-with components along :math:`A`, as everywhere in this package, or along :math:`N` on request.
+with components along $A$, as everywhere in this package, or along $N$ on request.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ LARGE = 0.5
 #: A larger slope is the effect of a singularity and of rounding.
 STEEP = 1e10
 
-#: Components of :math:`-[\hat e_k]_\times`, the derivative of a rotation about axis k at zero.
+#: Components of $-[\hat e_k]_\times$, the derivative of a rotation about axis k at zero.
 TURNS = (
     ((0, 0, 0), (0, 0, 1), (0, -1, 0)),
     ((0, 0, -1), (0, 0, 0), (1, 0, 0)),
@@ -250,21 +250,19 @@ def jacobian(
     r"""Derivative of the result of a conversion with respect to its input.
 
     A direction cosine matrix, given or returned, counts as the three components of a small
-    rotation: :math:`{}^A\mathbf{C}^N` becomes
-    :math:`\exp(-[\boldsymbol\delta]_\times)\,{}^A\mathbf{C}^N`.
+    rotation: ${}^A\mathbf{C}^N$ becomes $\exp(-[\boldsymbol\delta]_\times)\,{}^A\mathbf{C}^N$.
 
     Parameters
     ----------
     conversion : callable
-        A conversion of this package, such as :func:`body_fixed_from_dcm`, or a function of one
-        argument that calls one.
+        A conversion of this package, such as `body_fixed_from_dcm`, or a function of one argument
+        that calls one.
     value : SymPy expressions, floats or array of shape ``(*item)`` or ``(..., *item)``
         The first argument of the conversion, the input with respect to which to differentiate.
     *further
         Its other arguments, which are constant.
     along : {'target', 'source'}
-        The frame for the components of a small rotation: :math:`A` or :math:`N` of
-        :math:`{}^A\mathbf{C}^N`.
+        The frame for the components of a small rotation: $A$ or $N$ of ${}^A\mathbf{C}^N$.
 
     Returns
     -------
@@ -318,18 +316,18 @@ def propagate_covariance(
 ) -> Array:
     r"""Covariance of the result of a conversion, to first order.
 
-    .. math::
+    $$
+    \mathbf{P}_y = \mathbf{J}\,\mathbf{P}_x\,\mathbf{J}^T
+    $$
 
-       \mathbf{P}_y = \mathbf{J}\,\mathbf{P}_x\,\mathbf{J}^T
-
-    with the :func:`jacobian` of the conversion. The covariance of a direction cosine matrix is that
-    of the small rotation :math:`\boldsymbol\delta`, in square radians.
+    with the `jacobian` of the conversion. The covariance of a direction cosine matrix is that of
+    the small rotation $\boldsymbol\delta$, in square radians.
 
     Parameters
     ----------
     conversion, value, further, along
-        As for :func:`jacobian`. ROS states the covariance of small rotations about fixed axes:
-        those of :math:`N`, ``along='source'``.
+        As for `jacobian`. ROS states the covariance of small rotations about fixed axes: those of
+        $N$, ``along='source'``.
     covariance : array of shape ``(n, n)`` or ``(..., n, n)``
 
     Returns
@@ -345,7 +343,7 @@ def propagate_covariance(
     Raises
     ------
     ValueError
-        As :func:`jacobian`, and if the shapes do not fit.
+        As `jacobian`, and if the shapes do not fit.
 
     Examples
     --------

@@ -42,13 +42,13 @@ def simple_dcm(axis: Axis, angle: Values) -> Matrix: ...
 def simple_dcm(axis: Axis, angle: Values) -> Array | Matrix:
     r"""Direction cosine matrix of a simple orientation.
 
-    :math:`A` is turned with respect to :math:`N` through ``angle`` about a unit vector that both
-    share. About :math:`z`,
+    $A$ is turned with respect to $N$ through ``angle`` about a unit vector that both share. About
+    $z$,
 
-    .. math::
-
-       {}^A\mathbf{C}^N = \begin{bmatrix} \cos\theta & \sin\theta & 0 \\
-       -\sin\theta & \cos\theta & 0 \\ 0 & 0 & 1 \end{bmatrix}.
+    $$
+    {}^A\mathbf{C}^N = \begin{bmatrix} \cos\theta & \sin\theta & 0 \\
+    -\sin\theta & \cos\theta & 0 \\ 0 & 0 & 1 \end{bmatrix}.
+    $$
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def simple_dcm(axis: Axis, angle: Values) -> Array | Matrix:
     Returns
     -------
     SymPy matrix, array of shape ``(3, 3)`` or stack of shape ``(..., 3, 3)``
-        :math:`{}^A\mathbf{C}^N`.
+        ${}^A\mathbf{C}^N$.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def simple_dcm(axis: Axis, angle: Values) -> Array | Matrix:
     Notes
     -----
     Source: Moore (2022), section "Simple orientations".
-    In the book: :eq:`equation-simple-matrix`.
+    In the book: equation (2.2).
     """
     if not isinstance(axis, str) or axis not in AXES:
         raise ValueError(
@@ -107,13 +107,13 @@ def check_dcm(dcm: Values) -> None:
     r"""Say what is wrong with a matrix that should be a direction cosine matrix.
 
     A direction cosine matrix has rows of unit length that are perpendicular to each other,
-    :math:`\mathbf{C}\mathbf{C}^T = \mathbf{I}`, and :math:`\det\mathbf{C} = +1`. For a valid matrix
-    it returns nothing. It never repairs a matrix; :func:`nearest_dcm` does.
+    $\mathbf{C}\mathbf{C}^T = \mathbf{I}$, and $\det\mathbf{C} = +1$. For a valid matrix it returns
+    nothing. It never repairs a matrix; `nearest_dcm` does.
 
     Parameters
     ----------
     dcm : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^A\mathbf{C}^N`. A symbolic matrix is tested at random values of its symbols.
+        ${}^A\mathbf{C}^N$. A symbolic matrix is tested at random values of its symbols.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def check_dcm(dcm: Values) -> None:
 
     Notes
     -----
-    In the book: :eq:`equation-orthogonal`.
+    In the book: equation (3.7).
     """
     if is_symbolic(dcm):
         entries = symbol_components(dcm, (3, 3), "dcm")
@@ -150,7 +150,7 @@ def _as_they_are(f: Functions[Component], *entries: Component) -> Sequence[Compo
 def demand_dcm(
     entries: Sequence[complex], where: str = "", name: str = "dcm", tolerance: float = TOLERANCE
 ) -> None:
-    """Raise the error of :func:`check_dcm` for nine numbers, under the caller's name for them."""
+    """Raise the error of `check_dcm` for nine numbers, under the caller's name for them."""
     imaginary = max(abs(entry.imag) for entry in entries)
     if imaginary > tolerance:
         raise ValueError(
@@ -238,7 +238,7 @@ DCM_GUARD = Guard(dcm_excess, explain_dcm, 9)
 
 
 class NearestDCM(NamedTuple):
-    """Result of :func:`nearest_dcm`: the matrix, and its distance from the given one."""
+    """Result of `nearest_dcm`: the matrix, and its distance from the given one."""
 
     dcm: Array
     distance: numpy.float64 | Array
@@ -248,8 +248,8 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
     r"""Return the direction cosine matrix nearest to nine numbers, and its distance from them.
 
     Nearest means smallest Frobenius norm of the difference. With the singular value decomposition
-    :math:`\mathbf{M} = \mathbf{U}\boldsymbol{\Sigma}\mathbf{V}^T` it is
-    :math:`\mathbf{U}\,\mathrm{diag}(1, 1, \det(\mathbf{U}\mathbf{V}^T))\,\mathbf{V}^T`.
+    $\mathbf{M} = \mathbf{U}\boldsymbol{\Sigma}\mathbf{V}^T$ it is $\mathbf{U}\,\mathrm{diag}(1, 1,
+    \det(\mathbf{U}\mathbf{V}^T))\,\mathbf{V}^T$.
 
     Parameters
     ----------
@@ -279,7 +279,7 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
     Notes
     -----
     Source: Kabsch (1978), Umeyama (1991).
-    In the book: :eq:`equation-nearest`.
+    In the book: equation (13.1).
     """
     import numpy
 

@@ -70,18 +70,18 @@ def dcm_from_body_fixed(angles: Values, sequence: AxisSequence) -> Matrix: ...
 def dcm_from_body_fixed(angles: Values, sequence: AxisSequence) -> Array | Matrix:
     r"""Direction cosine matrix of three rotations, each about an axis of the turned frame.
 
-    For the sequence z-x-y, with angles :math:`\psi, \theta, \varphi`,
+    For the sequence z-x-y, with angles $\psi, \theta, \varphi$,
 
-    .. math::
-
-       {}^D\mathbf{C}^A = \mathbf{C}_y(\varphi)\,\mathbf{C}_x(\theta)\,\mathbf{C}_z(\psi).
+    $$
+    {}^D\mathbf{C}^A = \mathbf{C}_y(\varphi)\,\mathbf{C}_x(\theta)\,\mathbf{C}_z(\psi).
+    $$
 
     Parameters
     ----------
     angles : SymPy expressions or floats ``(psi, theta, phi)``, or array of shape ``(..., 3)``
         Angles in radians, in the order of the rotations.
     sequence : str
-        One of :data:`SEQUENCES`, such as ``'zxy'``.
+        One of `SEQUENCES`, such as ``'zxy'``.
 
     Returns
     -------
@@ -107,13 +107,13 @@ def dcm_from_body_fixed(angles: Values, sequence: AxisSequence) -> Array | Matri
     -----
     The three rotations are multiplied out once, for axes in cyclic order; the other order only
     changes the sign of the angles. Source: Shuster (1993), Diebel (2006).
-    In the book: :eq:`equation-gimbal-chain`.
+    In the book: equation (6.4).
     """
     return evaluate(body_fixed_formula(sequence), (3, 3), ("angles", angles, (3,)))
 
 
 def body_fixed_formula(sequence: str) -> Formula:
-    """Formula of :func:`dcm_from_body_fixed`, for the components of the angles."""
+    """Formula of `dcm_from_body_fixed`, for the components of the angles."""
     i, j, k, sign = layout_of(sequence)
     proper = sequence[0] == sequence[2]
 
@@ -156,15 +156,15 @@ def body_fixed_from_dcm(dcm: Values, sequence: AxisSequence) -> Array:
     Parameters
     ----------
     dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^D\mathbf{C}^A`. Numbers only.
+        ${}^D\mathbf{C}^A$. Numbers only.
     sequence : str
-        One of :data:`SEQUENCES`.
+        One of `SEQUENCES`.
 
     Returns
     -------
     array of shape ``(3,)`` or ``(..., 3)``
-        Radians. The first and the last lie in :math:`[-\pi, \pi]`; the middle one in
-        :math:`[-\pi/2, \pi/2]` for three different axes, and in :math:`[0, \pi]` otherwise.
+        Radians. The first and the last lie in $[-\pi, \pi]$; the middle one in $[-\pi/2, \pi/2]$
+        for three different axes, and in $[0, \pi]$ otherwise.
 
     Raises
     ------
@@ -181,7 +181,7 @@ def body_fixed_from_dcm(dcm: Values, sequence: AxisSequence) -> Array:
 
     Notes
     -----
-    In the book: :eq:`equation-back-psi` and :eq:`equation-back-rest`.
+    In the book: equations (10.1) and (10.2).
     """
     i, j, k, sign = layout_of(sequence)
     proper = sequence[0] == sequence[2]
@@ -219,13 +219,13 @@ def dcm_from_space_fixed(angles: Values, sequence: AxisSequence) -> Array | Matr
 
     Rotations about fixed axes multiply the matrices in the other order: for the sequence z-x-y,
 
-    .. math::
-
-       {}^D\mathbf{C}^A = \mathbf{C}_z(\psi)\,\mathbf{C}_x(\theta)\,\mathbf{C}_y(\varphi),
+    $$
+    {}^D\mathbf{C}^A = \mathbf{C}_z(\psi)\,\mathbf{C}_x(\theta)\,\mathbf{C}_y(\varphi),
+    $$
 
     which is the body fixed sequence y-x-z with the angles in reverse.
 
-    Parameters, results and errors are those of :func:`dcm_from_body_fixed`.
+    Parameters, results and errors are those of `dcm_from_body_fixed`.
 
     Examples
     --------
@@ -246,7 +246,7 @@ def dcm_from_space_fixed(angles: Values, sequence: AxisSequence) -> Array | Matr
 
 
 def space_fixed_from_dcm(dcm: Values, sequence: AxisSequence) -> Array:
-    """Space fixed angles of a direction cosine matrix: see :func:`body_fixed_from_dcm`.
+    """Space fixed angles of a direction cosine matrix: see `body_fixed_from_dcm`.
 
     Examples
     --------
@@ -262,15 +262,15 @@ def space_fixed_from_dcm(dcm: Values, sequence: AxisSequence) -> Array:
 def gimbal_lock_margin(angles: Values, sequence: AxisSequence) -> Scalars:
     r"""How far three Euler angles are from gimbal lock, in radians.
 
-    Lock is where the first and the last axes are parallel: at :math:`\theta = \pm\pi/2` for three
-    different axes, at :math:`\theta = 0` or :math:`\pi` for a sequence that returns to its first
-    axis. The margin is the angle between the two axes, from 0 (locked) to :math:`\pi/2`.
+    Lock is where the first and the last axes are parallel: at $\theta = \pm\pi/2$ for three
+    different axes, at $\theta = 0$ or $\pi$ for a sequence that returns to its first axis. The
+    margin is the angle between the two axes, from 0 (locked) to $\pi/2$.
 
     Parameters
     ----------
     angles : floats ``(psi, theta, phi)`` or array of shape ``(..., 3)``
     sequence : str
-        One of :data:`SEQUENCES`.
+        One of `SEQUENCES`.
 
     Returns
     -------
@@ -287,7 +287,7 @@ def gimbal_lock_margin(angles: Values, sequence: AxisSequence) -> Scalars:
 
 
 def lock_margin_formula(sequence: str) -> NumberFormula:
-    """Formula of :func:`gimbal_lock_margin`, for the components of the angles."""
+    """Formula of `gimbal_lock_margin`, for the components of the angles."""
     layout_of(sequence)
     proper = sequence[0] == sequence[2]
 

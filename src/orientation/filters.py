@@ -25,14 +25,14 @@ class Innovation(NamedTuple):
     Attributes
     ----------
     difference : array of shape ``(..., 3)``
-        Measured minus expected, :math:`\boldsymbol\nu`, along the body.
+        Measured minus expected, $\boldsymbol\nu$, along the body.
     covariance : array of shape ``(..., 3, 3)``
-        Of the difference, as the filter claims it before it corrects itself, :math:`\mathbf{S} =
-        \mathbf{H}\mathbf{P}\mathbf{H}^T + \mathbf{R}`.
+        Of the difference, as the filter claims it before it corrects itself, $\mathbf{S} =
+        \mathbf{H}\mathbf{P}\mathbf{H}^T + \mathbf{R}$.
     normalised_square : array of shape ``(...)``
-        NIS, :math:`\varepsilon = \boldsymbol\nu^T\mathbf{S}^{-1}\boldsymbol\nu`. No truth is
-        needed. If the claim is true it is 2 on average for a direction, which can be wrong in two
-        ways, and 3 for a whole orientation.
+        NIS, $\varepsilon = \boldsymbol\nu^T\mathbf{S}^{-1}\boldsymbol\nu$. No truth is needed. If
+        the claim is true it is 2 on average for a direction, which can be wrong in two ways, and 3
+        for a whole orientation.
     accepted : array of bool of shape ``(...)``
         Whether the square was within the gate. If not, the filter ignored the measurement.
     """
@@ -49,7 +49,7 @@ class FilterState(NamedTuple):
     Attributes
     ----------
     dcm : array of shape ``(..., 3, 3)``
-        :math:`{}^{\hat B}\mathbf{C}^N`.
+        ${}^{\hat B}\mathbf{C}^N$.
     bias : array of shape ``(..., 3)``
         Radians per second.
     covariance : array of shape ``(..., 6, 6)``
@@ -62,13 +62,13 @@ class FilterState(NamedTuple):
 
 
 class Prediction(NamedTuple):
-    r"""One step of a filter with its gyroscope, for :func:`smooth`.
+    r"""One step of a filter with its gyroscope, for `smooth`.
 
     Attributes
     ----------
     before, after : FilterState
     transition : array of shape ``(..., 6, 6)``
-        :math:`\boldsymbol\Phi`, which carries the error state over the step.
+        $\boldsymbol\Phi$, which carries the error state over the step.
     """
 
     before: FilterState
@@ -80,22 +80,22 @@ class MultiplicativeKalmanFilter:
     r"""Multiplicative extended Kalman filter of an orientation and of the gyroscope's bias.
 
     The orientation itself is a direction cosine matrix, which the filter rotates and never adds to.
-    The covariance is that of the error state: the small rotation vector :math:`\boldsymbol\delta`
-    from the estimated body to the true one, along the body,
+    The covariance is that of the error state: the small rotation vector $\boldsymbol\delta$ from
+    the estimated body to the true one, along the body,
 
-    .. math::
+    $$
+    {}^B\mathbf{C}^N = \exp\left(-[\boldsymbol\delta]_\times\right)\,{}^{\hat B}\mathbf{C}^N ,
+    $$
 
-       {}^B\mathbf{C}^N = \exp\left(-[\boldsymbol\delta]_\times\right)\,{}^{\hat B}\mathbf{C}^N ,
-
-    followed by the error :math:`\boldsymbol\beta` of the bias. Everything works for one orientation
-    and for a batch. The comments number the lines as the book's algorithm does.
+    followed by the error $\boldsymbol\beta$ of the bias. Everything works for one orientation and
+    for a batch. The comments number the lines as the book's algorithm does.
 
     Parameters
     ----------
     dcm : array of shape ``(..., 3, 3)``
-        The first estimate of :math:`{}^B\mathbf{C}^N`.
+        The first estimate of ${}^B\mathbf{C}^N$.
     covariance : array of shape ``(6, 6)`` or ``(..., 6, 6)``
-        Of :math:`\boldsymbol\delta` (square radians) and the bias (squares of radians per second).
+        Of $\boldsymbol\delta$ (square radians) and the bias (squares of radians per second).
     gyroscope_noise : float or array of shape ``(...)``
         Angle random walk, radians per square root of a second.
     bias_noise : float or array of shape ``(...)``
@@ -127,7 +127,7 @@ class MultiplicativeKalmanFilter:
     Notes
     -----
     Source: Lefferts, Markley and Shuster (1982); Markley (2003).
-    In the book: :eq:`equation-filter-turn` and :eq:`equation-filter-observe`.
+    In the book: equations (19.3) and (19.4).
     """
 
     def __init__(
@@ -162,7 +162,7 @@ class MultiplicativeKalmanFilter:
         Returns
         -------
         Prediction
-            For :func:`smooth`.
+            For `smooth`.
         """
         import numpy
 
@@ -198,13 +198,13 @@ class MultiplicativeKalmanFilter:
         observed : array of shape ``(..., 3)``
             The direction along the body, of any length.
         reference : array of shape ``(..., 3)``
-            The same direction along :math:`N`, of any length.
+            The same direction along $N$, of any length.
         deviation : float or array of shape ``(...)``
             Standard deviation perpendicular to the direction, radians.
         gate : float, optional
             A direction whose normalised square is larger is not used. An honest filter rejects one
-            in a hundred at 9.21, one in a thousand at 13.8 (:math:`\chi^2` with two degrees of
-            freedom, :math:`-2\ln p`).
+            in a hundred at 9.21, one in a thousand at 13.8 ($\chi^2$ with two degrees of freedom,
+            $-2\ln p$).
 
         Returns
         -------
@@ -234,9 +234,9 @@ class MultiplicativeKalmanFilter:
         Parameters
         ----------
         observed : array of shape ``(..., 3, 3)``
-            :math:`{}^B\mathbf{C}^N`.
+            ${}^B\mathbf{C}^N$.
         covariance : array of shape ``(3, 3)`` or ``(..., 3, 3)``
-            Of its error along the body, as :func:`directions_covariance` gives it; square radians.
+            Of its error along the body, as `directions_covariance` gives it; square radians.
         gate : float, optional
             As for a direction, with three degrees of freedom: 11.34 rejects one in a hundred.
 
@@ -287,20 +287,19 @@ def smooth(predictions: Sequence[Prediction], last: FilterState) -> FilterState:
     r"""Smooth the estimates of a filter: at each time, use the later measurements as well.
 
     The smoother of Rauch, Tung and Striebel, with the correction as a factor of the orientation.
-    Backwards from the last state, with :math:`{}^{-}` for before and :math:`{}^{+}` for after a
-    step,
+    Backwards from the last state, with ${}^{-}$ for before and ${}^{+}$ for after a step,
 
-    .. math::
-
-       \mathbf{A} = \mathbf{P}^{-}\boldsymbol\Phi^T(\mathbf{P}^{+})^{-1} , \qquad
-       \mathbf{x} = \mathbf{A}\,\mathbf{x}_{\text{later}} , \qquad
-       \mathbf{P} = \mathbf{P}^{-} +
-       \mathbf{A}\left(\mathbf{P}_{\text{later}} - \mathbf{P}^{+}\right)\mathbf{A}^T .
+    $$
+    \mathbf{A} = \mathbf{P}^{-}\boldsymbol\Phi^T(\mathbf{P}^{+})^{-1} , \qquad
+    \mathbf{x} = \mathbf{A}\,\mathbf{x}_{\text{later}} , \qquad
+    \mathbf{P} = \mathbf{P}^{-} +
+    \mathbf{A}\left(\mathbf{P}_{\text{later}} - \mathbf{P}^{+}\right)\mathbf{A}^T .
+    $$
 
     Parameters
     ----------
     predictions : list of Prediction
-        The ``n`` results of :meth:`MultiplicativeKalmanFilter.turn`, in order.
+        The ``n`` results of `MultiplicativeKalmanFilter.turn`, in order.
     last : FilterState
         The filter's ``state`` at the end.
 
@@ -326,7 +325,7 @@ def smooth(predictions: Sequence[Prediction], last: FilterState) -> FilterState:
     Notes
     -----
     Source: Rauch, Tung and Striebel (1965).
-    In the book: :eq:`equation-smoother`.
+    In the book: equation (19.9).
     """
     import numpy
 

@@ -169,7 +169,7 @@ class Frames:
     ) -> Frames:
         """Return frames with ``frame`` turned in ``reference`` by three body fixed turns.
 
-        Parameters are those of :func:`orientation.dcm_from_body_fixed`.
+        Parameters are those of `orientation.dcm_from_body_fixed`.
         """
         dcm_from_body_fixed(angles, sequence)  # refuses what is not valid, before it is stored
         own = _own(angles, (3,), "angles", is_symbolic(angles))
@@ -180,7 +180,7 @@ class Frames:
     def orient_dcm(self, frame: str, reference: str, dcm: Values) -> Frames:
         r"""Return frames with ``dcm`` as the matrix of ``frame`` with respect to ``reference``.
 
-        With ``('A', 'N', A_C_N)`` the matrix is :math:`{}^A\mathbf{C}^N`; it is checked first.
+        With ``('A', 'N', A_C_N)`` the matrix is ${}^A\mathbf{C}^N$; it is checked first.
         """
         check_dcm(dcm)
         own: Array | Matrix
@@ -205,7 +205,7 @@ class Frames:
     ) -> Frames:
         """Return frames with ``frame`` turned in ``reference`` about fixed axes.
 
-        Parameters are those of :func:`orientation.dcm_from_space_fixed`.
+        Parameters are those of `orientation.dcm_from_space_fixed`.
         """
         dcm_from_space_fixed(angles, sequence)  # refuses what is not valid, before it is stored
         own = _own(angles, (3,), "angles", is_symbolic(angles))
@@ -222,7 +222,7 @@ class Frames:
         """Return frames with ``frame`` turned in ``reference`` by a SciPy ``Rotation``.
 
         It turns components along ``frame`` into components along ``reference``, as for
-        :func:`orientation.dcm_from_scipy_rotation`.
+        `orientation.dcm_from_scipy_rotation`.
         """
         dcm = dcm_from_scipy_rotation(rotation)
         return self._with(frame, reference, _MatrixTurn(dcm, r"\text{SciPy rotation}"))
@@ -315,8 +315,8 @@ class Frames:
     def dcm(self, target: str, source: str) -> Array | Matrix:
         r"""Direction cosine matrix of ``target`` with respect to ``source``, over their path.
 
-        ``frames.dcm('D', 'A')`` is :math:`{}^D\mathbf{C}^A`, as ``D.dcm(A)`` is in SymPy.
-        Successive rotations about one axis are combined before anything is multiplied.
+        ``frames.dcm('D', 'A')`` is ${}^D\mathbf{C}^A$, as ``D.dcm(A)`` is in SymPy. Successive
+        rotations about one axis are combined before anything is multiplied.
 
         Raises
         ------
@@ -330,9 +330,9 @@ class Frames:
     def express(self, vector: Values, target: str, source: str) -> Array | Matrix:
         r"""Components of a vector along ``target``, from those along ``source``.
 
-        .. math::
-
-           [\mathbf{v}]_A = {}^A\mathbf{C}^N\,[\mathbf{v}]_N
+        $$
+        [\mathbf{v}]_A = {}^A\mathbf{C}^N\,[\mathbf{v}]_N
+        $$
 
         Parameters
         ----------
@@ -346,7 +346,7 @@ class Frames:
         Raises
         ------
         ValueError
-            As :meth:`Frames.dcm`.
+            As `Frames.dcm`.
         """
         dcm = self.dcm(target, source)
         if is_symbolic(vector) or is_symbolic(dcm):
@@ -381,7 +381,7 @@ class Frames:
         return sympy.Integer(0)  # type: ignore[no-any-return]
 
     def equation(self, target: str, source: str) -> Equation:
-        r"""Return :math:`{}^D\mathbf{C}^A` as the product over the
+        r"""Return ${}^D\mathbf{C}^A$ as the product over the
         path, each factor with its turns.
         """
         edges = self._edges_between(target, source)

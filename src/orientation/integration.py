@@ -24,23 +24,22 @@ def turns_from_angular_velocity(
 ) -> Array:
     r"""Return the rotation vector of each interval of time.
 
-    For a step of duration :math:`h` from :math:`t`, order 1 takes the angular velocity at its
-    beginning, :math:`h\,\boldsymbol{\omega}(t)`, and order 2 the one in its middle,
-    :math:`h\,\boldsymbol{\omega}(t + \frac{h}{2})`. Order 4 takes it at the two Gauss points
-    :math:`t + (\frac{1}{2} \mp \frac{\sqrt{3}}{6})h`, and adds the effect of the order of the
-    rotations in between (Magnus):
+    For a step of duration $h$ from $t$, order 1 takes the angular velocity at its beginning,
+    $h\,\boldsymbol{\omega}(t)$, and order 2 the one in its middle, $h\,\boldsymbol{\omega}(t +
+    \frac{h}{2})$. Order 4 takes it at the two Gauss points $t + (\frac{1}{2} \mp
+    \frac{\sqrt{3}}{6})h$, and adds the effect of the order of the rotations in between (Magnus):
 
-    .. math::
-
-       \mathbf{r} = \frac{h}{2}\left(\boldsymbol{\omega}_1 + \boldsymbol{\omega}_2\right)
-       + \frac{\sqrt{3}\,h^2}{12}\,\boldsymbol{\omega}_1\times\boldsymbol{\omega}_2
+    $$
+    \mathbf{r} = \frac{h}{2}\left(\boldsymbol{\omega}_1 + \boldsymbol{\omega}_2\right)
+    + \frac{\sqrt{3}\,h^2}{12}\,\boldsymbol{\omega}_1\times\boldsymbol{\omega}_2
+    $$
 
     Parameters
     ----------
     angular_velocity : callable
         ``angular_velocity(times)`` takes an array of shape ``(n,)`` and returns the components
-        along the rotating frame :math:`A`, shape ``(n, 3)``, radians per second. It is called once
-        for each point of a step.
+        along the rotating frame $A$, shape ``(n, 3)``, radians per second. It is called once for
+        each point of a step.
     times : array of shape ``(n + 1,)``
         Seconds.
     order : {1, 2, 4}
@@ -101,17 +100,17 @@ def turns_from_angular_velocity(
 def dcms_after_turns(start: Numbers, turns: Numbers) -> Array:
     r"""Return an orientation, and those reached from it by successive turns.
 
-    .. math::
-
-       \mathbf{C}_{k+1} = \exp\left(-[\mathbf{r}_k]_\times\right)\mathbf{C}_k
+    $$
+    \mathbf{C}_{k+1} = \exp\left(-[\mathbf{r}_k]_\times\right)\mathbf{C}_k
+    $$
 
     Parameters
     ----------
     start : array of shape ``(3, 3)``
-        :math:`{}^A\mathbf{C}^N` before the first rotation.
+        ${}^A\mathbf{C}^N$ before the first rotation.
     turns : array of shape ``(n, 3)``
-        Rotation vectors along the rotating frame :math:`A`, radians, such as those of
-        :func:`turns_from_angular_velocity` or the increments of a gyroscope.
+        Rotation vectors along the rotating frame $A$, radians, such as those of
+        `turns_from_angular_velocity` or the increments of a gyroscope.
 
     Returns
     -------

@@ -26,9 +26,8 @@ MOST_STEPS = 200
 def angle_between(first: Values, second: Values) -> Scalars:
     r"""Return the angle of the single rotation that leads from one orientation to another.
 
-    For :math:`{}^A\mathbf{C}^N` and :math:`{}^B\mathbf{C}^N` it is the angle of
-    :math:`{}^B\mathbf{C}^A`, the length of the shortest way between them. It keeps its digits near
-    0 and near :math:`\pi`.
+    For ${}^A\mathbf{C}^N$ and ${}^B\mathbf{C}^N$ it is the angle of ${}^B\mathbf{C}^A$, the length
+    of the shortest way between them. It keeps its digits near 0 and near $\pi$.
 
     Parameters
     ----------
@@ -38,7 +37,7 @@ def angle_between(first: Values, second: Values) -> Scalars:
     Returns
     -------
     float, or array of shape ``(...)``
-        From 0 to :math:`\pi`, radians.
+        From 0 to $\pi$, radians.
 
     Raises
     ------
@@ -84,8 +83,8 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
 
     By ``entries`` the distance is the Frobenius norm of the difference of the matrices: the mean is
     the direction cosine matrix nearest to their average. The mean of the quaternions, the
-    eigenvector of the largest eigenvalue of :math:`\sum_k w_k\,q_k q_k^T`, is the same orientation.
-    By ``angle`` it is the angle of the rotation between them, and the mean is found by repeatedly
+    eigenvector of the largest eigenvalue of $\sum_k w_k\,q_k q_k^T$, is the same orientation. By
+    ``angle`` it is the angle of the rotation between them, and the mean is found by repeatedly
     averaging rotation vectors from the current estimate.
 
     Parameters
@@ -118,8 +117,6 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
     -----
     Source: Moakher (2002), Markley et al. (2007).
     """
-    import numpy
-
     if metric not in METRICS:
         raise ValueError(f"metric must be 'entries' or 'angle', not {metric!r}")
     dcms = number_array(dcms, (3, 3), "dcms")
@@ -127,7 +124,7 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
         raise ValueError(f"dcms must have shape (n, 3, 3) with at least one item, not {dcms.shape}")
     check_dcm(dcms)
     shares = _shares(weights, len(dcms))
-    average = numpy.tensordot(shares, dcms, axes=1)
+    average = (shares @ dcms.reshape(-1, 9)).reshape(3, 3)
     if metric == "entries":
         try:
             return nearest_dcm(average).dcm

@@ -1,4 +1,4 @@
-"""The names of mix-ups, for :func:`~orientation.diagnose` and comparisons of programs."""
+"""The names of mix-ups, for `orientation.diagnose` and comparisons of programs."""
 
 TRANSPOSE = "the transpose, which is the inverse orientation"
 CONJUGATE = "the conjugate, which is the inverse orientation"

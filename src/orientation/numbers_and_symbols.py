@@ -65,7 +65,7 @@ class Guard(NamedTuple):
     Attributes
     ----------
     excess : callable
-        ``excess(functions, *components)`` is at most :data:`TOLERANCE` for valid input.
+        ``excess(functions, *components)`` is at most `TOLERANCE` for valid input.
     explain : callable
         ``explain(components, where)`` raises the error that explains the fault.
     size : int, optional
@@ -139,7 +139,7 @@ def evaluate_numbers(
 def evaluate_numbers(
     formula: NumberFormula, shape: tuple[int, ...], *arguments: Argument, guard: Guard | None = None
 ) -> Scalars:
-    """Apply a formula for numbers, which chooses its branch by size; see :func:`evaluate`."""
+    """Apply a formula for numbers, which chooses its branch by size; see `evaluate`."""
     result = _evaluate_at_a_glance(formula, shape, arguments, guard)
     if result is not None:
         return result
@@ -369,11 +369,7 @@ def _evaluate_batch(
     count, width = math.prod(batch), math.prod(shape)
     result = numpy.empty((count, width))
     for start in range(0, count, BLOCK):
-        components = [
-            column
-            for array in flat
-            for column in numpy.ascontiguousarray(array[start : start + BLOCK].T)
-        ]
+        components = [column for array in flat for column in array[start : start + BLOCK].T.copy()]
         if guard:
             demand(guard, components, batch, start, tolerance)
         block = result[start : start + BLOCK]
@@ -410,7 +406,7 @@ def number_array(value: object, item: tuple[int, ...], name: str) -> Array:
     """Return a float array of shape ``(..., *item)``, or raise an error that explains the fault.
 
     SymPy matrices of plain numbers are numbers here; a symbol among them raises
-    :class:`SymbolsNotPossible`.
+    `SymbolsNotPossible`.
     """
     import numpy
 
@@ -458,8 +454,8 @@ def _demand_finite_array(value: object, name: str) -> None:
 def number_tuples(value: object, shape: tuple[int, ...], name: str) -> Nested:
     """Return a float or nested tuples of floats of exactly this shape, or raise an error.
 
-    It accepts the same values as :func:`number_array`, but no batches, and does not need NumPy.
-    True and False are not numbers here.
+    It accepts the same values as `number_array`, but no batches, and does not need NumPy. True and
+    False are not numbers here.
     """
     result = _tuples(value, name, value)
     shape_found = _shape(result)

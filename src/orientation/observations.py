@@ -1,8 +1,7 @@
 """Orientation from observed directions: two vectors, or many with weights.
 
-A direction that is known in a frame :math:`N` (up, north, a star) is measured along a body
-:math:`B`. Two directions that are not parallel determine :math:`{}^B\\mathbf{C}^N`; more than two
-are fitted.
+A direction that is known in a frame $N$ (up, north, a star) is measured along a body $B$. Two
+directions that are not parallel determine ${}^B\\mathbf{C}^N$; more than two are fitted.
 """
 
 from __future__ import annotations
@@ -26,25 +25,25 @@ def dcm_from_two_directions(observed: Values, reference: Values) -> Array:
     r"""Direction cosine matrix that two observed directions fix: the TRIAD method.
 
     The first direction counts as exact, and the second determines only the rotation about the
-    first. Each pair gives a right-handed triad, :math:`\hat{t}_1 = \hat{u}_1`, :math:`\hat{t}_2
-    \parallel \hat{u}_1 \times \hat{u}_2`, :math:`\hat{t}_3 = \hat{t}_1 \times \hat{t}_2`; with the
-    triads as rows of :math:`\mathbf{T}_B` (observed) and :math:`\mathbf{T}_N` (reference),
+    first. Each pair gives a right-handed triad, $\hat{t}_1 = \hat{u}_1$, $\hat{t}_2 \parallel
+    \hat{u}_1 \times \hat{u}_2$, $\hat{t}_3 = \hat{t}_1 \times \hat{t}_2$; with the triads as rows
+    of $\mathbf{T}_B$ (observed) and $\mathbf{T}_N$ (reference),
 
-    .. math::
-
-       {}^B\mathbf{C}^N = \mathbf{T}_B^T\,\mathbf{T}_N .
+    $$
+    {}^B\mathbf{C}^N = \mathbf{T}_B^T\,\mathbf{T}_N .
+    $$
 
     Parameters
     ----------
     observed : array of shape ``(2, 3)`` or ``(..., 2, 3)``
-        The two directions along :math:`B`, of any length.
+        The two directions along $B$, of any length.
     reference : array of shape ``(2, 3)`` or ``(..., 2, 3)``
-        The same two directions along :math:`N`, in the same order.
+        The same two directions along $N$, in the same order.
 
     Returns
     -------
     array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^B\mathbf{C}^N`.
+        ${}^B\mathbf{C}^N$.
 
     Raises
     ------
@@ -62,7 +61,7 @@ def dcm_from_two_directions(observed: Values, reference: Values) -> Array:
     Notes
     -----
     Source: Black (1964); Shuster and Oh (1981).
-    In the book: :eq:`equation-triad`.
+    In the book: equation (18.6).
     """
     body, fixed = (
         _triad(number_array(pair, (2, 3), name), name)
@@ -105,31 +104,31 @@ def dcm_from_directions(
 ) -> Array:
     r"""Direction cosine matrix that fits many observed directions best: Wahba's problem.
 
-    Finds the :math:`{}^B\mathbf{C}^N` with the least
+    Finds the ${}^B\mathbf{C}^N$ with the least
 
-    .. math::
+    $$
+    \tfrac12 \sum_k \frac{1}{\sigma_k^2}\,\bigl|\hat{b}_k - {}^B\mathbf{C}^N\,\hat{n}_k\bigr|^2 ,
+    $$
 
-       \tfrac12 \sum_k \frac{1}{\sigma_k^2}\,\bigl|\hat{b}_k - {}^B\mathbf{C}^N\,\hat{n}_k\bigr|^2 ,
-
-    by the singular value decomposition of :math:`\sum_k \hat{b}_k \hat{n}_k^T / \sigma_k^2 =
-    \mathbf{U}\mathbf{S}\mathbf{V}^T`: it is :math:`\mathbf{U}\,\mathrm{diag}(1, 1,
-    \det\mathbf{U}\mathbf{V}^T)\, \mathbf{V}^T`, the direction cosine matrix nearest to that sum, as
-    in :func:`nearest_dcm`.
+    by the singular value decomposition of $\sum_k \hat{b}_k \hat{n}_k^T / \sigma_k^2 =
+    \mathbf{U}\mathbf{S}\mathbf{V}^T$: it is $\mathbf{U}\,\mathrm{diag}(1, 1,
+    \det\mathbf{U}\mathbf{V}^T)\, \mathbf{V}^T$, the direction cosine matrix nearest to that sum, as
+    in `nearest_dcm`.
 
     Parameters
     ----------
     observed : array of shape ``(count, 3)`` or ``(..., count, 3)``
-        Directions :math:`\hat{b}_k` along :math:`B`, of any length.
+        Directions $\hat{b}_k$ along $B$, of any length.
     reference : array of shape ``(count, 3)`` or ``(..., count, 3)``
-        The same directions :math:`\hat{n}_k` along :math:`N`.
+        The same directions $\hat{n}_k$ along $N$.
     deviations : array of shape ``(count,)``, optional
-        Standard deviation :math:`\sigma_k` of each direction in radians, perpendicular to it. If
-        they are omitted, all directions have the same weight.
+        Standard deviation $\sigma_k$ of each direction in radians, perpendicular to it. If they are
+        omitted, all directions have the same weight.
 
     Returns
     -------
     array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^B\mathbf{C}^N`.
+        ${}^B\mathbf{C}^N$.
 
     Raises
     ------
@@ -148,7 +147,7 @@ def dcm_from_directions(
     Notes
     -----
     Source: Wahba (1965); Markley (1988).
-    In the book: :eq:`equation-wahba`.
+    In the book: equation (18.7).
     """
     import numpy
 
@@ -172,20 +171,20 @@ def dcm_from_directions(
 def directions_covariance(observed: Numbers, deviations: Values) -> Array:
     r"""Covariance of the error of an orientation that was fitted to directions.
 
-    The error is the small rotation vector :math:`\boldsymbol\delta` from the estimated body to the
-    true one, along :math:`B`, with :math:`{}^B\mathbf{C}^N =
-    \exp(-[\boldsymbol\delta]_\times)\,{}^{\hat B}\mathbf{C}^N`. Each direction determines the
-    rotations about axes perpendicular to it, but not the rotation about itself:
+    The error is the small rotation vector $\boldsymbol\delta$ from the estimated body to the true
+    one, along $B$, with ${}^B\mathbf{C}^N = \exp(-[\boldsymbol\delta]_\times)\,{}^{\hat
+    B}\mathbf{C}^N$. Each direction determines the rotations about axes perpendicular to it, but not
+    the rotation about itself:
 
-    .. math::
-
-       \mathbf{P}^{-1} = \sum_k \frac{1}{\sigma_k^2}\left(\mathbf{I} - \hat{b}_k \hat{b}_k^T\right)
-       .
+    $$
+    \mathbf{P}^{-1} = \sum_k \frac{1}{\sigma_k^2}\left(\mathbf{I} - \hat{b}_k \hat{b}_k^T\right)
+    .
+    $$
 
     Parameters
     ----------
     observed : array of shape ``(count, 3)`` or ``(..., count, 3)``
-        Directions along :math:`B`, of any length.
+        Directions along $B$, of any length.
     deviations : array of shape ``(count,)``
         Standard deviation of each in radians, in every direction perpendicular to it.
 
@@ -208,7 +207,7 @@ def directions_covariance(observed: Numbers, deviations: Values) -> Array:
     Notes
     -----
     Source: Shuster and Oh (1981).
-    In the book: :eq:`equation-directions-covariance`.
+    In the book: equation (18.8).
     """
     import numpy
 

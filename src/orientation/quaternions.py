@@ -69,13 +69,13 @@ def dcm_from_quaternion(quaternion: Values) -> Matrix: ...
 def dcm_from_quaternion(quaternion: Values) -> Array | Matrix:
     r"""Direction cosine matrix of a unit quaternion.
 
-    .. math::
-
-       {}^A\mathbf{C}^N = \begin{bmatrix}
-       q_0^2 + q_i^2 - q_j^2 - q_k^2 & 2(q_i q_j + q_0 q_k) & 2(q_i q_k - q_0 q_j) \\
-       2(q_i q_j - q_0 q_k) & q_0^2 - q_i^2 + q_j^2 - q_k^2 & 2(q_j q_k + q_0 q_i) \\
-       2(q_i q_k + q_0 q_j) & 2(q_j q_k - q_0 q_i) & q_0^2 - q_i^2 - q_j^2 + q_k^2
-       \end{bmatrix}
+    $$
+    {}^A\mathbf{C}^N = \begin{bmatrix}
+    q_0^2 + q_i^2 - q_j^2 - q_k^2 & 2(q_i q_j + q_0 q_k) & 2(q_i q_k - q_0 q_j) \\
+    2(q_i q_j - q_0 q_k) & q_0^2 - q_i^2 + q_j^2 - q_k^2 & 2(q_j q_k + q_0 q_i) \\
+    2(q_i q_k + q_0 q_j) & 2(q_j q_k - q_0 q_i) & q_0^2 - q_i^2 - q_j^2 + q_k^2
+    \end{bmatrix}
+    $$
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def dcm_from_quaternion(quaternion: Values) -> Array | Matrix:
     ------
     ValueError
         If numbers are not of unit length to ``1e-9`` (``4e-6`` in single precision): the matrix
-        would be :math:`|q|^2` times an orthogonal one. Also if a shape is wrong or a number is not
+        would be $|q|^2$ times an orthogonal one. Also if a shape is wrong or a number is not
         finite.
 
     Examples
@@ -102,7 +102,7 @@ def dcm_from_quaternion(quaternion: Values) -> Array | Matrix:
     Notes
     -----
     Source: Shuster (1993), Moore (2022).
-    In the book: :eq:`equation-quaternion-vector`.
+    In the book: equation (12.2).
     """
 
     return evaluate(
@@ -116,7 +116,7 @@ def dcm_from_quaternion(quaternion: Values) -> Array | Matrix:
 def dcm_components_from_quaternion(
     f: Functions[Component], scalar: Component, x: Component, y: Component, z: Component
 ) -> Sequence[Component]:
-    """Formula of :func:`dcm_from_quaternion`, shared with the Rodrigues parameters."""
+    """Formula of `dcm_from_quaternion`, shared with the Rodrigues parameters."""
     ss, xx, yy, zz = scalar**2, x**2, y**2, z**2
     first, second = ss + xx, ss - xx
     # Doubling is exact. Each of these products is part of two entries.
@@ -147,7 +147,7 @@ def quaternion_components_from_dcm(
     zy: Number,
     zz: Number,
 ) -> tuple[Number, Number, Number, Number]:
-    """Formula of :func:`quaternion_from_dcm`, shared with the axis and angle."""
+    """Formula of `quaternion_from_dcm`, shared with the axis and angle."""
     # Each row is four times the quaternion times one of its own components. The longest row loses
     # no digits.
     above, below = 1 + xx, 1 - xx
@@ -175,13 +175,13 @@ def quaternion_from_dcm(dcm: Values) -> Array:
     Parameters
     ----------
     dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^A\mathbf{C}^N`. Numbers only.
+        ${}^A\mathbf{C}^N$. Numbers only.
 
     Returns
     -------
     array of shape ``(4,)`` or ``(..., 4)``
-        Scalar first. Of :math:`q` and :math:`-q`, which are the same orientation, the one with
-        :math:`q_0 \geq 0`; at :math:`q_0 = 0`, the one whose largest component is positive.
+        Scalar first. Of $q$ and $-q$, which are the same orientation, the one with $q_0 \geq 0$; at
+        $q_0 = 0$, the one whose largest component is positive.
 
     Raises
     ------
@@ -199,7 +199,7 @@ def quaternion_from_dcm(dcm: Values) -> Array:
     Notes
     -----
     Source: Shepperd (1978), Markley (2008).
-    In the book: :eq:`equation-back-quaternion`.
+    In the book: equation (10.4).
     """
     return evaluate_numbers(
         quaternion_components_from_dcm, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD
@@ -213,10 +213,9 @@ def multiply_quaternions(first: Values, second: Values) -> Matrix: ...
 def multiply_quaternions(first: Values, second: Values) -> Array | Matrix:
     r"""Hamilton product of two quaternions.
 
-    With :math:`i^2 = j^2 = k^2 = ijk = -1`. If ``first`` turns :math:`N` to :math:`A` and
-    ``second`` turns :math:`A` to :math:`B`, their product turns :math:`N` to :math:`B`: quaternions
-    are written in the order of the rotations, and matrices in the opposite order,
-    :math:`{}^B\mathbf{C}^N = {}^B\mathbf{C}^A\,{}^A\mathbf{C}^N`.
+    With $i^2 = j^2 = k^2 = ijk = -1$. If ``first`` turns $N$ to $A$ and ``second`` turns $A$ to
+    $B$, their product turns $N$ to $B$: quaternions are written in the order of the rotations, and
+    matrices in the opposite order, ${}^B\mathbf{C}^N = {}^B\mathbf{C}^A\,{}^A\mathbf{C}^N$.
 
     Parameters
     ----------
@@ -236,7 +235,7 @@ def multiply_quaternions(first: Values, second: Values) -> Array | Matrix:
     Notes
     -----
     Source: Hamilton (1844).
-    In the book: :eq:`equation-quaternion-product`.
+    In the book: equation (12.1).
     """
     return evaluate(product_components, (4,), ("first", first, (4,)), ("second", second, (4,)))
 
@@ -252,7 +251,7 @@ def product_components(
     h: Component,
     k: Component,
 ) -> Sequence[Component]:
-    """Formula of :func:`multiply_quaternions`."""
+    """Formula of `multiply_quaternions`."""
     return (
         a * e - b * g - c * h - d * k,
         a * g + b * e + c * k - d * h,
@@ -264,11 +263,11 @@ def product_components(
 def interpolate_quaternions(first: Values, second: Values, share: Values) -> Array:
     r"""Unit quaternion part of the way from one orientation to another, at constant speed (slerp).
 
-    With the angle :math:`\Omega` between :math:`q_1` and :math:`q_2`, taken the shorter way round,
+    With the angle $\Omega$ between $q_1$ and $q_2$, taken the shorter way round,
 
-    .. math::
-
-       q(s) = \frac{\sin((1 - s)\,\Omega)\,q_1 + \sin(s\,\Omega)\,q_2}{\sin\Omega} .
+    $$
+    q(s) = \frac{\sin((1 - s)\,\Omega)\,q_1 + \sin(s\,\Omega)\,q_2}{\sin\Omega} .
+    $$
 
     Parameters
     ----------
@@ -299,7 +298,7 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Arr
     Notes
     -----
     Source: Shoemake (1985).
-    In the book: :eq:`equation-slerp`.
+    In the book: equation (12.3).
     """
 
     def excess(f: NumberFunctions[Number], *components: Number) -> Number:

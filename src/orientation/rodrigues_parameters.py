@@ -33,15 +33,15 @@ def dcm_from_rodrigues(vector: Values) -> Matrix: ...
 def dcm_from_rodrigues(vector: Values) -> Array | Matrix:
     r"""Direction cosine matrix of Rodrigues parameters, also called the Gibbs vector.
 
-    :math:`\mathbf{g} = \tan\frac{\theta}{2}\,\hat{e}`, and the matrix is Cayley's transform of its
-    cross product:
+    $\mathbf{g} = \tan\frac{\theta}{2}\,\hat{e}$, and the matrix is Cayley's transform of its cross
+    product:
 
-    .. math::
-
-       {}^A\mathbf{C}^N
-       = \left(\mathbf{I} - [\mathbf{g}]_\times\right)
-         \left(\mathbf{I} + [\mathbf{g}]_\times\right)^{-1}
-       = \frac{(1 - g^2)\,\mathbf{I} + 2\,\mathbf{g}\mathbf{g}^T - 2\,[\mathbf{g}]_\times}{1 + g^2}
+    $$
+    {}^A\mathbf{C}^N
+    = \left(\mathbf{I} - [\mathbf{g}]_\times\right)
+      \left(\mathbf{I} + [\mathbf{g}]_\times\right)^{-1}
+    = \frac{(1 - g^2)\,\mathbf{I} + 2\,\mathbf{g}\mathbf{g}^T - 2\,[\mathbf{g}]_\times}{1 + g^2}
+    $$
 
     Parameters
     ----------
@@ -78,12 +78,12 @@ def rodrigues_from_dcm(dcm: Values) -> Array:
     Parameters
     ----------
     dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^A\mathbf{C}^N`. Numbers only.
+        ${}^A\mathbf{C}^N$. Numbers only.
 
     Returns
     -------
     array of shape ``(3,)`` or ``(..., 3)``
-        :math:`\tan\frac{\theta}{2}\,\hat{e}`.
+        $\tan\frac{\theta}{2}\,\hat{e}$.
 
     Raises
     ------
@@ -128,12 +128,12 @@ def dcm_from_modified_rodrigues(vector: Values) -> Matrix: ...
 def dcm_from_modified_rodrigues(vector: Values) -> Array | Matrix:
     r"""Direction cosine matrix of modified Rodrigues parameters.
 
-    With :math:`\boldsymbol{\sigma} = \tan\frac{\theta}{4}\,\hat{e}`,
+    With $\boldsymbol{\sigma} = \tan\frac{\theta}{4}\,\hat{e}$,
 
-    .. math::
-
-       {}^A\mathbf{C}^N = \mathbf{I} + \frac{8\,[\boldsymbol{\sigma}]_\times^2
-       - 4\,(1 - \sigma^2)\,[\boldsymbol{\sigma}]_\times}{(1 + \sigma^2)^2} .
+    $$
+    {}^A\mathbf{C}^N = \mathbf{I} + \frac{8\,[\boldsymbol{\sigma}]_\times^2
+    - 4\,(1 - \sigma^2)\,[\boldsymbol{\sigma}]_\times}{(1 + \sigma^2)^2} .
+    $$
 
     Parameters
     ----------
@@ -177,13 +177,13 @@ def modified_rodrigues_from_dcm(dcm: Values) -> Array:
     Parameters
     ----------
     dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^A\mathbf{C}^N`. Numbers only.
+        ${}^A\mathbf{C}^N$. Numbers only.
 
     Returns
     -------
     array of shape ``(3,)`` or ``(..., 3)``
-        :math:`\tan\frac{\theta}{4}\,\hat{e}` with :math:`\theta` from 0 to :math:`\pi`: of the
-        vector and its shadow, the one that is no longer than 1.
+        $\tan\frac{\theta}{4}\,\hat{e}$ with $\theta$ from 0 to $\pi$: of the vector and its shadow,
+        the one that is no longer than 1.
 
     Raises
     ------
@@ -213,12 +213,12 @@ def shadow_of_modified_rodrigues(vector: Values) -> Matrix: ...
 def shadow_of_modified_rodrigues(vector: Values) -> Array | Matrix:
     r"""The other modified Rodrigues parameters of the same orientation: the shadow.
 
-    .. math::
+    $$
+    \boldsymbol{\sigma}' = -\,\frac{\boldsymbol{\sigma}}{\sigma^2}
+    $$
 
-       \boldsymbol{\sigma}' = -\,\frac{\boldsymbol{\sigma}}{\sigma^2}
-
-    It belongs to the quaternion :math:`-q`, the rotation the other way round. Switch to it whenever
-    :math:`\sigma` becomes longer than 1, to avoid the singularity at a full turn.
+    It belongs to the quaternion $-q$, the rotation the other way round. Switch to it whenever
+    $\sigma$ becomes longer than 1, to avoid the singularity at a full turn.
 
     Parameters
     ----------

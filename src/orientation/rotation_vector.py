@@ -30,14 +30,14 @@ def dcm_from_rotation_vector(vector: Values) -> Matrix: ...
 def dcm_from_rotation_vector(vector: Values) -> Array | Matrix:
     r"""Direction cosine matrix of a rotation vector: the exponential.
 
-    The rotation vector :math:`\mathbf{r} = \theta\,\hat{e}` points along the axis and is as long as
-    the angle. With :math:`\theta = |\mathbf{r}|`,
+    The rotation vector $\mathbf{r} = \theta\,\hat{e}$ points along the axis and is as long as the
+    angle. With $\theta = |\mathbf{r}|$,
 
-    .. math::
-
-       {}^A\mathbf{C}^N = \exp\left(-[\mathbf{r}]_\times\right)
-       = \mathbf{I} - \frac{\sin\theta}{\theta}[\mathbf{r}]_\times
-       + \frac{1 - \cos\theta}{\theta^2}[\mathbf{r}]_\times^2 .
+    $$
+    {}^A\mathbf{C}^N = \exp\left(-[\mathbf{r}]_\times\right)
+    = \mathbf{I} - \frac{\sin\theta}{\theta}[\mathbf{r}]_\times
+    + \frac{1 - \cos\theta}{\theta^2}[\mathbf{r}]_\times^2 .
+    $$
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def dcm_from_rotation_vector(vector: Values) -> Array | Matrix:
     Notes
     -----
     Source: Shuster (1993).
-    In the book: :eq:`equation-exponential-closed`.
+    In the book: equation (14.3).
     """
 
     def formula(
@@ -93,12 +93,12 @@ def rotation_vector_from_dcm(dcm: Values) -> Array:
     Parameters
     ----------
     dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^A\mathbf{C}^N`. Numbers only.
+        ${}^A\mathbf{C}^N$. Numbers only.
 
     Returns
     -------
     array of shape ``(3,)`` or ``(..., 3)``
-        :math:`\theta\,\hat{e}` with :math:`\theta` from 0 to :math:`\pi`, radians.
+        $\theta\,\hat{e}$ with $\theta$ from 0 to $\pi$, radians.
 
     Raises
     ------

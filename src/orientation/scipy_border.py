@@ -1,8 +1,7 @@
 r"""The one place where this book's matrices meet SciPy's rotations.
 
-SciPy's ``Rotation`` of a frame :math:`A` in :math:`N` turns components measured along :math:`A`
-into components along :math:`N`, so its matrix is :math:`{}^N\mathbf{C}^A`. The transpose happens
-here and nowhere else.
+SciPy's ``Rotation`` of a frame $A$ in $N$ turns components measured along $A$ into components along
+$N$, so its matrix is ${}^N\mathbf{C}^A$. The transpose happens here and nowhere else.
 """
 
 from __future__ import annotations
@@ -25,12 +24,12 @@ def scipy_rotation_from_dcm(dcm: Values) -> Rotation:
     Parameters
     ----------
     dcm : array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^A\mathbf{C}^N`. Numbers only.
+        ${}^A\mathbf{C}^N$. Numbers only.
 
     Returns
     -------
     scipy.spatial.transform.Rotation
-        Its ``as_matrix()`` is :math:`{}^N\mathbf{C}^A`, the transpose.
+        Its ``as_matrix()`` is ${}^N\mathbf{C}^A$, the transpose.
 
     Raises
     ------
@@ -55,7 +54,7 @@ def scipy_rotation_from_dcm(dcm: Values) -> Rotation:
 
 
 def dcm_from_scipy_rotation(rotation: Rotation) -> Array:
-    r"""Direction cosine matrix :math:`{}^A\mathbf{C}^N` of a SciPy ``Rotation``.
+    r"""Direction cosine matrix ${}^A\mathbf{C}^N$ of a SciPy ``Rotation``.
 
     Parameters
     ----------

@@ -80,7 +80,6 @@ np.broadcast_to(v, (2, 3))
 np.diff(v), np.diff(A, axis=0), np.diff(v, prepend=v[0]), np.cumsum(v)
 np.cumsum(A, axis=0)
 np.full(2, 3.0), np.ones((2, 2)), np.zeros(2, int), np.empty(0).shape
-np.atleast_2d(v)
 np.float64(3)[..., None]
 v.tolist(), A.shape, A.size, A.ndim, A.dtype, v.astype(int), len(A), list(v), v[0].shape
 (v > 0).sum(), (v > 0).mean()

@@ -61,7 +61,7 @@ def in_words(text, whole):
 def keep_punctuation(tokens):
     """Keep the comma after a formula on its line by setting it within the formula."""
     for formula, after in pairwise(tokens):
-        if formula.type == "math_inline" and after.content[:1] in (*PUNCTUATION, "?", "!"):
+        if formula.type == "math_inline" and after.content[:1] in PUNCTUATION:
             formula.content += rf"\text{{{after.content[0]}}}"
             after.content = after.content[1:]
 

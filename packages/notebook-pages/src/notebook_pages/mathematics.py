@@ -12,8 +12,10 @@ import subprocess
 from contextlib import suppress
 from functools import cache
 from html import escape
+from textwrap import indent
 
 from docutils import nodes
+from sphinx import addnodes
 from sphinx.util import logging
 from sphinx.util.math import get_node_equation_number
 
@@ -66,7 +68,6 @@ class KaTeX:
         return json.loads(answer)
 
     def close(self):
-        atexit.unregister(self.close)
         with suppress(BrokenPipeError):
             self.process.stdin.close()
         self.process.wait()
@@ -134,6 +135,40 @@ def keep_punctuation(app, doctree, docname):
             parent[place - 1] = nodes.Text(before[:-1])
 
 
+def typeset_docstring(app, what, name, documented, options, lines):
+    """Make formulas of the TeX between dollars, which a docstring has since a terminal shows it."""
+    text = re.sub(
+        r"^( *)\$\$\n(.*?)^ *\$\$$",
+        lambda found: f"{found[1]}.. math::\n\n" + indent(found[2], "   "),
+        "\n".join(lines),
+        flags=re.MULTILINE | re.DOTALL,
+    )
+    lines[:] = re.sub(r"\$([^$]+)\$", r":math:`\1`", text).split("\n")
+
+
+def link_equations(app, doctree, docname):
+    """Make links of the numbers by which docstrings name equations, after *In the book*."""
+    places = {
+        f"({'.'.join(map(str, number))})": app.builder.get_relative_uri(docname, page) + f"#{place}"
+        for page, numbers in app.env.toc_fignumbers.items()
+        for place, number in numbers.get("displaymath", {}).items()
+    }
+    texts = [
+        text
+        for described in doctree.findall(addnodes.desc_content)
+        for text in described.findall(nodes.Text)
+        if "In the book: " in text
+    ]
+    for text in texts:
+        parts = [
+            nodes.reference("", part, refuri=places[part], internal=True)
+            if part in places
+            else nodes.Text(part)
+            for part in re.split(r"(\([\d.]+\))", text)
+        ]
+        text.parent.replace(text, parts)
+
+
 def visit_inline(translator, node):
     translator.body.append(render(node, display=False))
     raise nodes.SkipNode
@@ -152,6 +187,9 @@ def visit_display(translator, node):
 
 
 def setup(app):
+    app.setup_extension("sphinx.ext.autodoc")
+    app.connect("autodoc-process-docstring", typeset_docstring)
+    app.connect("doctree-resolved", link_equations)
     app.connect("doctree-resolved", keep_punctuation)
     app.add_html_math_renderer(
         "katex", inline_renderers=(visit_inline, None), block_renderers=(visit_display, None)

@@ -1,4 +1,4 @@
 """The pictures of the book: drawings, plots, animations and interactive figures.
 
-This package draws what :mod:`orientation` computes; ``orientation`` does not import it.
+This package draws what `orientation` computes; ``orientation`` does not import it.
 """

@@ -1,11 +1,10 @@
 r"""Line drawings of reference frames.
 
-A :class:`Drawing` is a sheet seen by a camera. The camera is one more reference frame :math:`V`,
-with :math:`\hat{v}_x` to the right, :math:`\hat{v}_y` up and :math:`\hat{v}_z` towards the reader;
-points are given by their components along :math:`N` and reach the sheet through
-:math:`{}^V\mathbf{C}^N`, without perspective. In a notebook the drawing shows itself as inline SVG:
-it scales with the page, follows the light or dark theme, and carries the text that stands for it
-for readers who do not see it.
+A `Drawing` is a sheet seen by a camera. The camera is one more reference frame $V$, with
+$\hat{v}_x$ to the right, $\hat{v}_y$ up and $\hat{v}_z$ towards the reader; points are given by
+their components along $N$ and reach the sheet through ${}^V\mathbf{C}^N$, without perspective. In a
+notebook the drawing shows itself as inline SVG: it scales with the page, follows the light or dark
+theme, and carries the text that stands for it for readers who do not see it.
 """
 
 import hashlib
@@ -27,7 +26,7 @@ LABELS = Path(__file__).with_name("labels.json")
 
 
 def looking_down(axis):
-    r"""Return the view :math:`{}^V\mathbf{C}^N` with ``axis`` of :math:`N` towards the reader.
+    r"""Return the view ${}^V\mathbf{C}^N$ with ``axis`` of $N$ towards the reader.
 
     The next axis in the order x, y, z, x points to the right and the one after it points up, so a
     positive angle about ``axis`` is seen counterclockwise.
@@ -53,14 +52,14 @@ def looking_down(axis):
 
 
 def view_from(azimuth, elevation):
-    r"""Return the view :math:`{}^V\mathbf{C}^N` of an upright camera that looks at the origin.
+    r"""Return the view ${}^V\mathbf{C}^N$ of an upright camera that looks at the origin.
 
     Parameters
     ----------
     azimuth : float
-        Where the camera stands: radians about :math:`\hat{n}_z`, from :math:`\hat{n}_x`.
+        Where the camera stands: radians about $\hat{n}_z$, from $\hat{n}_x$.
     elevation : float
-        Radians above the plane of :math:`\hat{n}_x` and :math:`\hat{n}_y`.
+        Radians above the plane of $\hat{n}_x$ and $\hat{n}_y$.
 
     Returns
     -------
@@ -84,8 +83,8 @@ class Drawing(Words):
     r"""A sheet on which frames, vectors and angles are drawn.
 
     The sheet is cut to what is drawn. Every drawing method returns the drawing, so that calls can
-    be chained. Points are given by their three components along :math:`N`, lengths in the same
-    unit. ``colour`` is the letter of a frame, ``'ink'``, ``'muted'`` or ``'accent'``. Texts between
+    be chained. Points are given by their three components along $N$, lengths in the same unit.
+    ``colour`` is the letter of a frame, ``'ink'``, ``'muted'`` or ``'accent'``. Texts between
     dollar signs are set as mathematics; ``shift`` moves a text by pixels to the right and down.
 
     Parameters
@@ -93,7 +92,7 @@ class Drawing(Words):
     alt : str
         The text that stands for the picture: it says what the picture shows. Required.
     view : array of shape ``(3, 3)``
-        :math:`{}^V\mathbf{C}^N`, for instance from :func:`looking_down` or :func:`view_from`.
+        ${}^V\mathbf{C}^N$, for instance from `looking_down` or `view_from`.
     scale : float
         Pixels for one unit of length.
 
@@ -214,8 +213,8 @@ class Drawing(Words):
                 else shape[1] / 1000 * typeset(shape[0])[1]
             )
             corners += [
-                np.min(np.atleast_2d(place), axis=0) + ink[0],
-                np.max(np.atleast_2d(place), axis=0) + ink[1],
+                np.min(np.reshape(place, (-1, 2)), axis=0) + ink[0],
+                np.max(np.reshape(place, (-1, 2)), axis=0) + ink[1],
             ]
         return np.concatenate([np.min(corners, axis=0), np.max(corners, axis=0)])
 

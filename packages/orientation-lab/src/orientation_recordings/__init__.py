@@ -191,7 +191,7 @@ def walking_leg() -> tuple[Recording, Recording]:
 
     Returns
     -------
-    tuple of two :class:`Recording`
+    tuple of two `Recording`
         Thigh and shank, 120 samples a second, sample for sample at the same times, without
         quaternions.
     """
@@ -211,9 +211,9 @@ def bright_stars() -> tuple[list[str], Array, Array]:
     Returns
     -------
     tuple of a list of str, an array of shape ``(n, 3)`` and an array of shape ``(n,)``
-        Names; unit vectors along the equatorial frame :math:`N`, :math:`\\hat{n}_z` to the
-        celestial pole and :math:`\\hat{n}_x` to the vernal equinox (International Celestial
-        Reference System); magnitudes, smaller ones for brighter stars.
+        Names; unit vectors along the equatorial frame $N$, $\\hat{n}_z$ to the celestial pole and
+        $\\hat{n}_x$ to the vernal equinox (International Celestial Reference System); magnitudes,
+        smaller ones for brighter stars.
 
     Examples
     --------

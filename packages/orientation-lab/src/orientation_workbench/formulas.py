@@ -1,9 +1,9 @@
 """Record the formulas of ``orientation``: what each computes, step by step, without any number.
 
 Each conversion is written once, as a formula that takes components and a namespace of functions.
-Here the components are :class:`Value`, which remember how they were made, and so the formula tells
-itself, with its operations in their order. :mod:`orientation_workbench.languages` writes it down in
-other languages.
+Here the components are `Value`, which remember how they were made, and so the formula tells itself,
+with its operations in their order. `orientation_workbench.languages` writes it down in other
+languages.
 """
 
 import math
@@ -229,7 +229,7 @@ CHOICES = {
 
 
 def formula_of(name, components, choice=None):
-    """The results of one of :data:`FORMULAS` for the components of its
+    """The results of one of `FORMULAS` for the components of its
     arguments, each a list of values.
     """
     given = [

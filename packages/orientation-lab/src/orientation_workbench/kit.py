@@ -31,13 +31,13 @@ TAKES = {
 
 
 class Convention(NamedTuple):
-    """What :func:`convention_of` found.
+    """What `convention_of` found.
 
     ``takes`` and ``gives`` say how the arguments and the result are to be read: for each group of
-    :data:`orientation_workbench.mismatch.table.KINDS` the choice. ``inverse`` is whether the result
-    is the transpose of this book's matrix, the conjugate of its quaternion, or the turn in the
-    other sense. ``body`` and ``world`` are the axes that the result calls x, y and z. ``words`` are
-    all departures from this book, each as a phrase.
+    `orientation_workbench.mismatch.table.KINDS` the choice. ``inverse`` is whether the result is
+    the transpose of this book's matrix, the conjugate of its quaternion, or the turn in the other
+    sense. ``body`` and ``world`` are the axes that the result calls x, y and z. ``words`` are all
+    departures from this book, each as a phrase.
     """
 
     takes: dict
@@ -156,7 +156,7 @@ def assert_convention(
     Parameters
     ----------
     function, takes, gives, sequence
-        As for :func:`convention_of`.
+        As for `convention_of`.
     inverse : bool
         Whether it gives the transpose, or the conjugate, of what this book does, as SciPy's
         matrices are.
@@ -172,7 +172,7 @@ def assert_convention(
     AssertionError
         With what the function does otherwise.
     ValueError
-        As for :func:`convention_of`, and for a word that is not known.
+        As for `convention_of`, and for a word that is not known.
 
     Examples
     --------

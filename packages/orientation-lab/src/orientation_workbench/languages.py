@@ -1,7 +1,7 @@
 """Take a formula away: the module's own, in another language and in another convention.
 
-:mod:`orientation_workbench.formulas` records what a function of ``orientation`` computes; here it
-is written down. No formula stands here a second time.
+`orientation_workbench.formulas` records what a function of ``orientation`` computes; here it is
+written down. No formula stands here a second time.
 """
 
 import math
@@ -198,10 +198,9 @@ def formula_in(
     Parameters
     ----------
     language : str
-        One of :data:`LANGUAGES`.
+        One of `LANGUAGES`.
     name : str
-        One of :data:`~orientation_workbench.formulas.FORMULAS`, a public function of
-        ``orientation``.
+        One of `orientation_workbench.formulas.FORMULAS`, a public function of ``orientation``.
     choice : str, optional
         The sequence of Euler angles, or the axis, where the function takes one.
     **convention

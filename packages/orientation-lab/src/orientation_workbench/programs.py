@@ -2,20 +2,20 @@
 the printed card and the workbench.
 
 A program has a ``matrix`` (``'as here'``, or ``'transposed'`` where it gives the transpose of this
-book's :math:`{}^A\\mathbf{C}^N`), a ``scalar`` (``'first'`` or ``'last'``) and a ``unit`` of its
-angles. Its ``lines`` are the forms that it takes, each with the line of code for it. In a line,
-``{w} {x} {y} {z}`` are the parts of a quaternion or of a vector, ``{a} {b} {c}`` three angles in
-the order of the turns and ``{ax} {ay} {az}`` the same by their axes; ``{s}`` is the sequence,
-``{S}`` the same in capitals, ``{A} {B} {C}`` its letters, ``{i} {j} {k}`` their numbers from 0;
-``{m}`` a matrix, row by row, and ``{t}`` its nine numbers column by column; ``{-a}`` is what
-``{a}`` is with the other sign. ``sequences`` names the only ones where there are not all twelve.
-``version`` is the one that was run, by ``python -m tools.programs``, and empty where the table
-follows the manual alone, which is at ``manual`` and was read in November 2026.
+book's ${}^A\\mathbf{C}^N$), a ``scalar`` (``'first'`` or ``'last'``) and a ``unit`` of its angles.
+Its ``lines`` are the forms that it takes, each with the line of code for it. In a line, ``{w} {x}
+{y} {z}`` are the parts of a quaternion or of a vector, ``{a} {b} {c}`` three angles in the order of
+the turns and ``{ax} {ay} {az}`` the same by their axes; ``{s}`` is the sequence, ``{S}`` the same
+in capitals, ``{A} {B} {C}`` its letters, ``{i} {j} {k}`` their numbers from 0; ``{m}`` a matrix,
+row by row, and ``{t}`` its nine numbers column by column; ``{-a}`` is what ``{a}`` is with the
+other sign. ``sequences`` names the only ones where there are not all twelve. ``version`` is the one
+that was run, by ``python -m tools.programs``, and empty where the table follows the manual alone,
+which is at ``manual`` and was read in November 2026.
 
 What two programs can be expected to differ by is said by some more, each left out where the manual
 has nothing on it: ``angles`` are the choices for three numbers by that program, as
-:data:`~orientation_workbench.mismatch.table.KINDS` calls them; ``three numbers`` says that they are
-a rotation vector; ``printed`` is the order in which it prints a quaternion, if it takes it in
+`orientation_workbench.mismatch.table.KINDS` calls them; ``three numbers`` says that they are a
+rotation vector; ``printed`` is the order in which it prints a quaternion, if it takes it in
 another; ``inverse`` are forms, besides the matrix, that mean the inverse of this book's; ``body``
 and ``world`` are where x, y and z of a thing and of its world point to. East counts as forward
 there and north as left, as ROS has it.

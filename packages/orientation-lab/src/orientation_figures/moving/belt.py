@@ -15,14 +15,14 @@ class BeltFigure(MovingFigure):
     r"""A plate that hangs on a wall by a belt, and is turned about the belt's own line.
 
     Along the belt the orientation goes from that of the wall to that of the plate, as a curve of
-    quaternions from 1 to :math:`q`. After one full turn it ends at :math:`-1`, after two at 1. Then
-    the belt can be passed round the plate while the plate is held: after two full turns that takes
-    the twist out, after one it only reverses it.
+    quaternions from 1 to $q$. After one full turn it ends at $-1$, after two at 1. Then the belt
+    can be passed round the plate while the plate is held: after two full turns that takes the twist
+    out, after one it only reverses it.
 
     Attributes
     ----------
     angle : float
-        What the plate has been turned by, radians from 0 to :math:`4\pi`.
+        What the plate has been turned by, radians from 0 to $4\pi$.
     passed : float
         How far the belt has been passed round the plate, from 0 to 1. It counts only after one or
         two full turns.

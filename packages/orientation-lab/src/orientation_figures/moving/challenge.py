@@ -14,12 +14,12 @@ from .state import Turns
 
 
 class ChallengeFigure(MovingFigure):
-    r"""A box with the frame :math:`A`, which the reader turns about its own axes to a goal.
+    r"""A box with the frame $A$, which the reader turns about its own axes to a goal.
 
     In the task 'match' the goal is an orientation of which only the matrix is shown. In 'undo' the
-    box has been turned, and the goal is where it came from, :math:`N`. In 'ghost' a ghost has made
-    three turns through angles that are told, about axes that are not. How well it is done is said
-    by the angle that remains.
+    box has been turned, and the goal is where it came from, $N$. In 'ghost' a ghost has made three
+    turns through angles that are told, about axes that are not. How well it is done is said by the
+    angle that remains.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class ChallengeFigure(MovingFigure):
 
     @property
     def dcm(self):
-        r""":math:`{}^A\mathbf{C}^N` of the box in its current state, shape ``(3, 3)``."""
+        r"""${}^A\mathbf{C}^N$ of the box in its current state, shape ``(3, 3)``."""
         return chain((*self.given, *self.turns) if self.task == "undo" else self.turns, "body")[-1]
 
     @property

@@ -11,8 +11,8 @@ from .state import Numbers
 class CloudFigure(MovingFigure):
     r"""Orientations about an estimate, with Gaussian errors along the ground or along the body.
 
-    Drawn are the tips of :math:`\hat{b}_x` and :math:`\hat{b}_z` of each. The axis with the large
-    errors stands still along the ground, or turns with the body.
+    Drawn are the tips of $\hat{b}_x$ and $\hat{b}_z$ of each. The axis with the large errors stands
+    still along the ground, or turns with the body.
 
     Attributes
     ----------

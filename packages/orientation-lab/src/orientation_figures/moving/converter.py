@@ -89,8 +89,7 @@ class ConverterFigure(MovingFigure):
     Attributes
     ----------
     quaternion : tuple of four floats
-        The orientation that both sides describe: :math:`{}^A\mathbf{C}^N` as a quaternion, scalar
-        first.
+        The orientation that both sides describe: ${}^A\mathbf{C}^N$ as a quaternion, scalar first.
     source, target : dict
         For each side ``program``, one of those in ``orientation_workbench.programs``; ``form``;
         ``sequence``; and for another program ``matrix``, ``scalar`` and ``unit``.
@@ -115,5 +114,5 @@ class ConverterFigure(MovingFigure):
 
     @property
     def dcm(self):
-        r""":math:`{}^A\mathbf{C}^N`, shape ``(3, 3)``."""
+        r"""${}^A\mathbf{C}^N$, shape ``(3, 3)``."""
         return dcm_from_quaternion(self.quaternion)

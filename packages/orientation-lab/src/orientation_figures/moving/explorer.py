@@ -48,9 +48,9 @@ SYMBOL = (
 class SequenceExplorer(anywidget.AnyWidget):
     r"""The direction cosine matrix of any of the twelve sequences, with its factors.
 
-    It shows :math:`{}^D\mathbf{C}^A` as the product of its three simple matrices and multiplied
-    out, and what remains of it at gimbal lock, where only the sum or the difference of two angles
-    counts. The reader can change the sequence and the angles.
+    It shows ${}^D\mathbf{C}^A$ as the product of its three simple matrices and multiplied out, and
+    what remains of it at gimbal lock, where only the sum or the difference of two angles counts.
+    The reader can change the sequence and the angles.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ class SequenceExplorer(anywidget.AnyWidget):
 
     @property
     def dcm(self):
-        r""":math:`{}^D\mathbf{C}^A`, a SymPy matrix."""
+        r"""${}^D\mathbf{C}^A$, a SymPy matrix."""
         return self._dcm(self.values)
 
     @property

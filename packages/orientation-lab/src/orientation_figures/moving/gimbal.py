@@ -13,7 +13,7 @@ from .state import Numbers, Sequence
 
 
 class GimbalFigure(MovingFigure):
-    r"""A camera gimbal: handgrip :math:`A`, two rings :math:`B` and :math:`C`, camera :math:`D`.
+    r"""A camera gimbal: handgrip $A$, two rings $B$ and $C$, camera $D$.
 
     Each joint turns what it carries about one axis, in the order of the sequence, so that the
     angles are body fixed Euler angles. Near gimbal lock the figure says which two sliders turn
@@ -22,7 +22,7 @@ class GimbalFigure(MovingFigure):
     Attributes
     ----------
     angles : tuple of three floats
-        :math:`(\psi, \theta, \varphi)` in radians, each from :math:`-\pi` to :math:`\pi`.
+        $(\psi, \theta, \varphi)$ in radians, each from $-\pi$ to $\pi$.
     sequence : str
         One of the twelve sequences.
     more : bool
@@ -58,7 +58,7 @@ class GimbalFigure(MovingFigure):
 
     @property
     def dcm(self):
-        r""":math:`{}^D\mathbf{C}^A`, shape ``(3, 3)``."""
+        r"""${}^D\mathbf{C}^A$, shape ``(3, 3)``."""
         return dcm_from_body_fixed(self.angles, self.sequence)
 
     @dcm.setter

@@ -56,7 +56,7 @@ class GraphFigure(MovingFigure):
     ----------
     edges : tuple of one to five tuples
         ``(frame, reference, axis, angle)``: a new frame, one that is there already, 'x', 'y' or
-        'z', and an angle in radians, from :math:`-\pi` to :math:`\pi`. The first frame is ``'N'``.
+        'z', and an angle in radians, from $-\pi$ to $\pi$. The first frame is ``'N'``.
     target, source : str
         The two frames whose matrix is shown.
 
@@ -96,7 +96,7 @@ class GraphFigure(MovingFigure):
 
     @property
     def frames(self):
-        """The graph as :class:`orientation.Frames`."""
+        """The graph as `orientation.Frames`."""
         frames = Frames()
         for edge in self.edges:
             frames = frames.orient_axis(*edge)

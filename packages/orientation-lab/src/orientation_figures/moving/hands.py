@@ -9,10 +9,10 @@ from .state import Direction
 
 
 class HandsFigure(MovingFigure):
-    r"""A right-handed triad :math:`N`, and its mirror image or a copy, which the reader rotates.
+    r"""A right-handed triad $N$, and its mirror image or a copy, which the reader rotates.
 
-    The angles between the arrows of the same name are shown. A copy can be brought onto :math:`N`.
-    Of the mirror image two arrows can fit, and then the third points the wrong way.
+    The angles between the arrows of the same name are shown. A copy can be brought onto $N$. Of the
+    mirror image two arrows can fit, and then the third points the wrong way.
 
     Attributes
     ----------
@@ -21,7 +21,7 @@ class HandsFigure(MovingFigure):
         The turn that the image has made, scalar first. Any four numbers but zeros may be given;
         they are kept at unit length.
     together : bool
-        Whether the image is drawn over :math:`N`, or beside it.
+        Whether the image is drawn over $N$, or beside it.
 
     Examples
     --------
@@ -40,7 +40,7 @@ class HandsFigure(MovingFigure):
 
     @property
     def dcm(self):
-        r""":math:`{}^A\mathbf{C}^N` of a frame after the same rotation, shape ``(3, 3)``."""
+        r"""${}^A\mathbf{C}^N$ of a frame after the same rotation, shape ``(3, 3)``."""
         return dcm_from_quaternion(self.quaternion)
 
     @property

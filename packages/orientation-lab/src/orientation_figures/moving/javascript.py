@@ -2,10 +2,9 @@
 
 Run it with ``python -m orientation_figures.moving.javascript``. The content of a figure is
 described once, in ``pictures``: functions of its state that use the methods of a sheet
-(:mod:`~orientation_figures.words`) and the functions of :mod:`~orientation_figures.vectors`. Python
-draws stills with them; this module translates them, statement by statement, for the figures in the
-page. The files are committed with the others, as the figures need them where nothing can be
-translated.
+(`orientation_figures.words`) and the functions of `orientation_figures.vectors`. Python draws
+stills with them; this module translates them, statement by statement, for the figures in the page.
+The files are committed with the others, as the figures need them where nothing can be translated.
 
 A description consists of functions, constants, loops and comprehensions, conditions and lists.
 Keyword arguments become an object, and the optional arguments of a method must be passed by name.

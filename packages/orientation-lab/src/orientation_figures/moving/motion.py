@@ -51,17 +51,16 @@ class MotionFigure(MovingFigure):
 
     The body spins with 4 rad/s about one of its principal axes, slightly disturbed. Its orientation
     is carried along as a direction cosine matrix, as a quaternion and as Euler angles in the
-    sequence :math:`z`-:math:`x`-:math:`y`. Each is given one and the same angular velocity, which
-    is found in steps ten times finer; what they differ in is their own. One of them is drawn, and
-    dashed the reference, a quaternion integrated in the finer steps. Plots show how the drift
-    grows.
+    sequence $z$-$x$-$y$. Each is given one and the same angular velocity, which is found in steps
+    ten times finer; what they differ in is their own. One of them is drawn, and dashed the
+    reference, a quaternion integrated in the finer steps. Plots show how the drift grows.
 
     Attributes
     ----------
     moments : tuple of three floats
-        The principal moments of inertia about :math:`\hat{a}_x`, :math:`\hat{a}_y` and
-        :math:`\hat{a}_z`, from 0.1 to 20 g m\ :sup:`2`, none larger than the sum of the others. A
-        racket is drawn for its own, otherwise the uniform block that has them.
+        The principal moments of inertia about $\hat{a}_x$, $\hat{a}_y$ and $\hat{a}_z$, from 0.1 to
+        20 g m², none larger than the sum of the others. A racket is drawn for its own, otherwise
+        the uniform block that has them.
     axis : str
         The principal axis that it spins about, 'x', 'y' or 'z'.
     disturbance : float

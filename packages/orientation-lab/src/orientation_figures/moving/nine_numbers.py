@@ -10,7 +10,7 @@ class NineNumbersFigure(MovingFigure):
     r"""Nine numbers, seen as three row vectors, against the nearest direction cosine matrix.
 
     The reader edits the numbers or drags the arrows. The figure says which of the conditions fails,
-    rows of unit length, right angles, right-handed, in the words of :func:`orientation.check_dcm`.
+    rows of unit length, right angles, right-handed, in the words of `orientation.check_dcm`.
 
     Attributes
     ----------

@@ -10,17 +10,17 @@ from .state import Numbers
 
 
 class PhoneFigure(MovingFigure):
-    r"""A phone :math:`B`, and the ground :math:`N` with axes to the east, the north and upwards.
+    r"""A phone $B$, and the ground $N$ with axes to the east, the north and upwards.
 
     On a phone the figure asks for its sensors when a button is pressed, and follows it; nothing is
     sent anywhere. The angles are those that browsers report: body fixed z-x-y, from the ground to
-    the phone, whose :math:`\hat{b}_x` points to the right across the screen, :math:`\hat{b}_y` to
-    its top and :math:`\hat{b}_z` out of it.
+    the phone, whose $\hat{b}_x$ points to the right across the screen, $\hat{b}_y$ to its top and
+    $\hat{b}_z$ out of it.
 
     Attributes
     ----------
     angles : tuple of three floats
-        :math:`(\alpha, \beta, \gamma)` in radians, each from :math:`-\pi` to :math:`\pi`.
+        $(\alpha, \beta, \gamma)$ in radians, each from $-\pi$ to $\pi$.
 
     Examples
     --------
@@ -43,7 +43,7 @@ class PhoneFigure(MovingFigure):
 
     @property
     def dcm(self):
-        r""":math:`{}^B\mathbf{C}^N`, shape ``(3, 3)``."""
+        r"""${}^B\mathbf{C}^N$, shape ``(3, 3)``."""
         return dcm_from_body_fixed(self.angles, "zxy")
 
     @property

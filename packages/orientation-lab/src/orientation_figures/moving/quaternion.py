@@ -24,26 +24,26 @@ STEP = 1e-4
 class QuaternionFigure(MovingFigure):
     r"""Half angles and their uses, in two views.
 
-    In the view 'double' a frame :math:`A` rotates in :math:`N` about an axis, and beside it
-    :math:`q = \cos\frac{\theta}{2} + \sin\frac{\theta}{2}\,\hat{e}` goes round a circle at half the
-    speed. After one full rotation it has become :math:`-q`, and after two it is back.
+    In the view 'double' a frame $A$ rotates in $N$ about an axis, and beside it $q =
+    \cos\frac{\theta}{2} + \sin\frac{\theta}{2}\,\hat{e}$ goes round a circle at half the speed.
+    After one full rotation it has become $-q$, and after two it is back.
 
-    In the view 'way' three frames go from the orientation of :math:`A` to that of :math:`B` in four
-    seconds: :math:`C` by interpolating quaternions (slerp), :math:`D` by interpolating Euler angles
-    z-x-y, :math:`E` by the direction cosine matrix nearest to the interpolated matrix entries.
+    In the view 'way' three frames go from the orientation of $A$ to that of $B$ in four seconds:
+    $C$ by interpolating quaternions (slerp), $D$ by interpolating Euler angles z-x-y, $E$ by the
+    direction cosine matrix nearest to the interpolated matrix entries.
 
     Attributes
     ----------
     view : {'double', 'way'}
     more : bool
-        Whether :math:`-q` is shown beside :math:`q`, and the views can be exchanged.
+        Whether $-q$ is shown beside $q$, and the views can be exchanged.
     axis : tuple of three floats
-        Direction of :math:`\hat{e}`, normalised.
+        Direction of $\hat{e}$, normalised.
     angle : float
-        :math:`\theta` in radians, from 0 to :math:`4\pi`.
+        $\theta$ in radians, from 0 to $4\pi$.
     first, second : tuples of three floats
-        Body fixed angles ``(psi, theta, phi)`` of :math:`A` and :math:`B` in :math:`N` for the
-        sequence 'zxy', in radians, each from :math:`-\pi` to :math:`\pi`.
+        Body fixed angles ``(psi, theta, phi)`` of $A$ and $B$ in $N$ for the sequence 'zxy', in
+        radians, each from $-\pi$ to $\pi$.
     unit_vector : {'x', 'y', 'z'}
         The unit vector whose tip is followed.
     share : float
@@ -99,11 +99,11 @@ class QuaternionFigure(MovingFigure):
 
     @property
     def dcm(self):
-        r""":math:`{}^A\mathbf{C}^N` of the view 'double', shape ``(3, 3)``."""
+        r"""${}^A\mathbf{C}^N$ of the view 'double', shape ``(3, 3)``."""
         return dcm_from_quaternion(self.quaternion)
 
     def ways(self, share):
-        r"""Return the matrices of :math:`C`, :math:`D` and :math:`E` in :math:`N` part of the way.
+        r"""Return the matrices of $C$, $D$ and $E$ in $N$ part of the way.
 
         None stands for a way that does not exist: slerp between orientations half a turn apart, or
         blended entries to which several matrices are equally near.

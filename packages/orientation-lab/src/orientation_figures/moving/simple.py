@@ -11,17 +11,17 @@ from .state import Numbers
 
 
 class SimpleFigure(MovingFigure):
-    r"""A frame :math:`A`, rotated in :math:`N` about :math:`x`, :math:`y` or :math:`z`.
+    r"""A frame $A$, rotated in $N$ about $x$, $y$ or $z$.
 
     Three views move together: the triads in space, the same down the shared unit vector, and
-    :math:`{}^A\mathbf{C}^N`. A number that is touched lights up the shadow that it measures.
+    ${}^A\mathbf{C}^N$. A number that is touched lights up the shadow that it measures.
 
     Attributes
     ----------
     axis : str
         ``'x'``, ``'y'`` or ``'z'``: the unit vector that the frames share.
     angle : float
-        Radians, from :math:`-\pi` to :math:`\pi`.
+        Radians, from $-\pi$ to $\pi$.
 
     Examples
     --------
@@ -40,5 +40,5 @@ class SimpleFigure(MovingFigure):
 
     @property
     def dcm(self):
-        r""":math:`{}^A\mathbf{C}^N`, shape ``(3, 3)``."""
+        r"""${}^A\mathbf{C}^N$, shape ``(3, 3)``."""
         return simple_dcm(self.axis, self.angle)

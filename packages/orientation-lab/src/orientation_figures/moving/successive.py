@@ -13,30 +13,29 @@ from .state import Numbers, Turns
 
 
 class SuccessiveFigure(MovingFigure):
-    r"""A chain of up to four simple rotations from :math:`N` to :math:`D`.
+    r"""A chain of up to four simple rotations from $N$ to $D$.
 
     Beside the frames stand the matrices of the turns and their product. With body fixed turns the
     newest stands on the left,
 
-    .. math::
+    $$
+    {}^D\mathbf{C}^N = {}^D\mathbf{C}^C\,{}^C\mathbf{C}^B\,{}^B\mathbf{C}^A\,{}^A\mathbf{C}^N ,
+    $$
 
-       {}^D\mathbf{C}^N = {}^D\mathbf{C}^C\,{}^C\mathbf{C}^B\,{}^B\mathbf{C}^A\,{}^A\mathbf{C}^N ,
-
-    with turns about the axes of :math:`N` on the right. A second chain can be drawn beside the
-    first, with two neighbouring turns exchanged or of the other kind; its end is the frame
-    :math:`E`.
+    with turns about the axes of $N$ on the right. A second chain can be drawn beside the first,
+    with two neighbouring turns exchanged or of the other kind; its end is the frame $E$.
 
     Attributes
     ----------
     turns : tuple of pairs
-        One to four turns, each an axis 'x', 'y' or 'z' and an angle in radians, from :math:`-\pi`
-        to :math:`\pi`.
+        One to four turns, each an axis 'x', 'y' or 'z' and an angle in radians, from $-\pi$ to
+        $\pi$.
     fixed : {'body', 'space'}
-        Whether each turn is about a unit vector of the frame before it, or about one of :math:`N`.
+        Whether each turn is about a unit vector of the frame before it, or about one of $N$.
     compare : str
-        What the second chain is: one of :data:`COMPARISONS`.
+        What the second chain is: one of `COMPARISONS`.
     more : bool
-        Whether turns about the axes of :math:`N` and the other second chains can be chosen.
+        Whether turns about the axes of $N$ and the other second chains can be chosen.
     share : float
         How much of the chain has been gone through, from 0 to 1.
 

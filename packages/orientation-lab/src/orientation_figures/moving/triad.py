@@ -18,18 +18,18 @@ from .state import Direction, Numbers, Sequence
 
 
 class TriadFigure(MovingFigure):
-    r"""A triad :math:`A`, turned in :math:`N` through an angle about an axis.
+    r"""A triad $A$, turned in $N$ through an angle about an axis.
 
-    Beside the drawing stand :math:`{}^A\mathbf{C}^N`, Euler angles, axis and angle, and the
-    quaternion of the same orientation. A number that is touched lights up what it means.
+    Beside the drawing stand ${}^A\mathbf{C}^N$, Euler angles, axis and angle, and the quaternion of
+    the same orientation. A number that is touched lights up what it means.
 
     Attributes
     ----------
     axis : tuple of three floats
-        Direction of the axis, the same along :math:`N` and :math:`A`. Any vector but zero may be
-        given; it is kept at unit length.
+        Direction of the axis, the same along $N$ and $A$. Any vector but zero may be given; it is
+        kept at unit length.
     angle : float
-        Radians, from :math:`-\pi` to :math:`\pi`.
+        Radians, from $-\pi$ to $\pi$.
     sequence : str
         Which of the twelve sequences the Euler angles belong to.
     more : bool
@@ -71,7 +71,7 @@ class TriadFigure(MovingFigure):
 
     @property
     def dcm(self):
-        r""":math:`{}^A\mathbf{C}^N`, shape ``(3, 3)``."""
+        r"""${}^A\mathbf{C}^N$, shape ``(3, 3)``."""
         return dcm_from_axis_angle(self.axis, self.angle)
 
     @dcm.setter

@@ -23,7 +23,7 @@ GAUSS = 0.5 - 3**0.5 / 6, 0.5 + 3**0.5 / 6
 # Cache the results, because an unchanged figure draws the same run again and again.
 @lru_cache(maxsize=8)
 def run(moments, axis, disturbance, method, step, restored, count):
-    """Return the arrays of so many steps, as in :meth:`MotionFigure.run`.
+    """Return the arrays of so many steps, as in `MotionFigure.run`.
 
     The angular velocity is computed once, in steps ten times finer, and is the same for every
     description, so that they differ only by their own errors.

@@ -98,7 +98,7 @@ class WorkbenchFigure(MovingFigure):
     Attributes
     ----------
     first, second : str
-        The numbers of each program, as :func:`orientation_workbench.explain` reads them.
+        The numbers of each program, as `orientation_workbench.explain` reads them.
     first_is, second_is : dict
         The known facts about each: ``program``, ``kind``, ``sequence``, ``order`` of a quaternion,
         ``axes of the turns``, and ``way``, the direction of the transformation; each

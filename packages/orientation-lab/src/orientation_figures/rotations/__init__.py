@@ -2,7 +2,7 @@
 
 The page of the essay has one figure, which stays while the text scrolls past. Its scenes are made
 by ``js/scene.js``, which the page runs. ``scenes.json`` contains one scene of each stop, written by
-``python -m tools.rotations``, and :mod:`orientation_figures.rotations.painter` draws it.
+``python -m tools.rotations``, and `orientation_figures.rotations.painter` draws it.
 """
 
 import json
@@ -85,7 +85,7 @@ class Stop:
         self.still = scenes()["stills"][known.index(name)]
 
     def svg(self, colours=None):
-        """Return the SVG element, with ``colours`` as in :func:`.painter.picture`."""
+        """Return the SVG element, with ``colours`` as in `painter.picture`."""
         from .painter import picture
 
         return picture(self.still, scenes(), colours)

@@ -33,7 +33,7 @@ class Name(NamedTuple):
 
 
 class Explanation(NamedTuple):
-    """What :func:`explain` found.
+    """What `explain` found.
 
     ``verdict`` is ``'same'``, ``'named'``, ``'undecided'`` or ``'unrelated'``. ``chains`` holds one
     chain for each reading of the numbers that is left, simplest first, and ``faults`` the words of
@@ -84,9 +84,9 @@ def explain(
         rounding. Numbers as such are taken to be exact to single precision.
     first_declared, second_declared : dict, optional
         What is known of a program, such as ``{'kind': 'Euler angles', 'sequence': 'zyx'}``: the
-        groups and choices of :data:`orientation_workbench.mismatch.table.KINDS`.
+        groups and choices of `orientation_workbench.mismatch.table.KINDS`.
     first_program, second_program : str, optional
-        Names of :data:`orientation_workbench.programs.PROGRAMS`, or a part of one. What a program's
+        Names of `orientation_workbench.programs.PROGRAMS`, or a part of one. What a program's
         manual says of its numbers is no mix-up then; if both are named, neither is what their
         manuals differ by.
     noise : float

@@ -32,12 +32,12 @@ def _radians(choices):
 
 
 def dcms_from_numbers(reading, numbers):
-    r"""Matrices :math:`{}^A\mathbf{C}^N` that numbers mean by one reading.
+    r"""Matrices ${}^A\mathbf{C}^N$ that numbers mean by one reading.
 
     Parameters
     ----------
     reading : dict
-        As :func:`orientation_workbench.mismatch.table.readings` lists them.
+        As `orientation_workbench.mismatch.table.readings` lists them.
     numbers : array of shape ``(poses, count)``
         Quaternions need not be of unit length, nor axes.
 

@@ -16,9 +16,9 @@ ON_ONE_SIDE, ON_BOTH_SIDES = 3, 4
 def mountings(first, second, noise):
     """All chains with a constant turn on one side or on both that fit every pose, cheapest first.
 
-    From :math:`\\mathbf{M}_2 = \\mathbf{L}\\,\\mathbf{M}_1\\,\\mathbf{R}` at three poses or more
-    follow the constant turns :math:`\\mathbf{L}` and :math:`\\mathbf{R}`. What is found from some
-    poses must hold at all of them.
+    From $\\mathbf{M}_2 = \\mathbf{L}\\,\\mathbf{M}_1\\,\\mathbf{R}$ at three poses or more follow
+    the constant turns $\\mathbf{L}$ and $\\mathbf{R}$. What is found from some poses must hold at
+    all of them.
     """
     if first.dcms.shape[1] < ON_ONE_SIDE:
         return []

@@ -169,7 +169,7 @@ def chains(first, second, noise, expected, special):
         Radians by which the orientations may differ besides the rounding of what is printed.
     expected : tuple
         What the programs differ by in any case:
-        :func:`orientation_workbench.mismatch.table.expected_relation`.
+        `orientation_workbench.mismatch.table.expected_relation`.
     special : bool
         Whether the poses leave several readings open, however neat one is.
     """
@@ -311,7 +311,7 @@ def after_inside(inside, dcms):
 
 
 def _all_inside(dcms):
-    """The same for all of :func:`_inner_relations`, an array of
+    """The same for all of `_inner_relations`, an array of
     shape ``(relations, poses, 3, 3)``.
     """
     dcms, permuted = nearest_dcm(dcms).dcm, [[int(k) - 1 for k in places] for places in _PERMUTED]

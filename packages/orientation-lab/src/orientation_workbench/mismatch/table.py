@@ -3,18 +3,18 @@
 A *reading* says what the numbers of one side mean: it is one choice from each group of its kind. A
 *relation* says how the orientation of the second side follows from that of the first:
 
-.. math::
+$$
+\\mathbf{M}_2 = \\mathbf{P}\\,\\mathbf{M}_1\\,\\mathbf{Q}
+\\quad\\text{or}\\quad
+\\mathbf{M}_2 = \\mathbf{P}\\,\\mathbf{M}_1^T\\,\\mathbf{Q},
+$$
 
-   \\mathbf{M}_2 = \\mathbf{P}\\,\\mathbf{M}_1\\,\\mathbf{Q}
-   \\quad\\text{or}\\quad
-   \\mathbf{M}_2 = \\mathbf{P}\\,\\mathbf{M}_1^T\\,\\mathbf{Q},
-
-with signed permutations :math:`\\mathbf{P}` (axes of the body, which are the rows) and
-:math:`\\mathbf{Q}` (axes of the world, the columns). Each departure from what was to be expected is
-a *fault*. What both sides do alike, such as to write the scalar last, is none. A chain costs one
-for each fault and its ``rarity`` besides, which is 0 for what many programs do and above 1 for what
-none is known to do; the cheapest chain comes first. Page, command and Python read this table;
-nothing of it is said twice.
+with signed permutations $\\mathbf{P}$ (axes of the body, which are the rows) and $\\mathbf{Q}$
+(axes of the world, the columns). Each departure from what was to be expected is a *fault*. What
+both sides do alike, such as to write the scalar last, is none. A chain costs one for each fault and
+its ``rarity`` besides, which is 0 for what many programs do and above 1 for what none is known to
+do; the cheapest chain comes first. Page, command and Python read this table; nothing of it is said
+twice.
 """
 
 import functools
@@ -344,7 +344,7 @@ def expected_relation(first, second, kinds):
     Parameters
     ----------
     first, second : dict or None
-        As :func:`orientation_workbench.programs.expected_of` gives them; without both nothing is
+        As `orientation_workbench.programs.expected_of` gives them; without both nothing is
         expected.
     kinds : tuple of two str
         What the numbers of each side are.
@@ -467,9 +467,9 @@ def readings(kind, declared, degrees_likely=False):
     Parameters
     ----------
     kind : str
-        A key of :data:`KINDS`.
+        A key of `KINDS`.
     declared : dict
-        Groups for which it is known what the program does; others are as in :data:`BOOK`.
+        Groups for which it is known what the program does; others are as in `BOOK`.
     degrees_likely : bool
         A number is larger than a whole turn in radians: then degrees are to be expected.
     """

@@ -74,7 +74,7 @@ def read_poses(given, name: str, kind: str | None = None, noise: float = 0.0) ->
     name : str
         What the side is called in a message.
     kind : str, optional
-        A key of :data:`~orientation_workbench.mismatch.table.COUNTS`, where it is known.
+        A key of `orientation_workbench.mismatch.table.COUNTS`, where it is known.
     noise : float
         Radians.
 

@@ -33,7 +33,7 @@ def allan_deviation(rates: Array, step: float) -> tuple[Array, Array]:
     """Allan deviation of an instrument that lies still, from all stretches of each length.
 
     ``sigma(tau)**2`` is half the mean square of the difference between the means of neighbouring
-    stretches (El-Sheimy, Hou and Niu 2008; in the book :eq:`equation-allan`).
+    stretches (El-Sheimy, Hou and Niu 2008; in the book equation (19.1)).
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def noise_of(times: Array, deviations: Array) -> StillNoise:
     ----------
     times : array of shape ``(m,)``
     deviations : array of shape ``(m, k)``
-        As :func:`allan_deviation` gives them.
+        As `allan_deviation` gives them.
 
     Returns
     -------

@@ -69,14 +69,14 @@ def examine(
     Parameters
     ----------
     source : path, bytes, str or list of paths
-        A table of numbers in any form that :func:`.table.read_tables` takes.
+        A table of numbers in any form that `table.read_tables` takes.
     name : str, optional
         What to call it.
     rate : float, optional
         Samples per second, where the file only counts them.
     columns : str
         What the columns are, where the file does not say it: see
-        :func:`~orientation_workbench.recording.content.read_content`.
+        `orientation_workbench.recording.content.read_content`.
     judged : bool
         Whether to run the filter, which takes longer than all the rest.
     progress : callable, optional

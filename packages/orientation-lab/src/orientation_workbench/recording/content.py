@@ -83,7 +83,7 @@ class Content(NamedTuple):
     Attributes
     ----------
     groups : dict
-        A :class:`Group` by its kind: gyroscope, accelerometer, magnetometer, quaternion, angles.
+        A `Group` by its kind: gyroscope, accelerometer, magnetometer, quaternion, angles.
     clock : str
         The heading of the time that is used, and its unit; or that there is none.
     counted : bool
@@ -111,7 +111,7 @@ def read_content(
     Parameters
     ----------
     source : path, list of paths, bytes or str
-        As :func:`.table.read_tables` takes it. All its tables share one clock.
+        As `table.read_tables` takes it. All its tables share one clock.
     name : str, optional
     rate : float, optional
         Samples per second, where the file only counts them.

@@ -56,8 +56,8 @@ def spread_of_lengths(values: Array) -> float:
 def fit_ellipsoid(values: Array, most: float = 0.1) -> FieldFit | None:
     """Fit offset and shape of a magnetometer to the lengths alone, without a gyroscope.
 
-    First the ten coefficients of the quadric nearest to the values (in the book
-    :eq:`equation-ellipsoid`), then the lengths themselves by least squares.
+    First the ten coefficients of the quadric nearest to the values (in the book equation (18.11)),
+    then the lengths themselves by least squares.
 
     Parameters
     ----------

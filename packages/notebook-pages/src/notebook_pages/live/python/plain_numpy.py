@@ -1032,23 +1032,6 @@ def asarray(a, dtype=None):
 
 
 @offered
-def ascontiguousarray(a):
-    return atleast_1d(a)
-
-
-@offered
-def atleast_1d(value, /):
-    value = as_array(value)
-    return value if value.shape else value.reshape(1)
-
-
-@offered
-def atleast_2d(value, /):
-    value = as_array(value)
-    return value if value.ndim > 1 else value.reshape(1, -1)
-
-
-@offered
 def full(shape, fill_value, dtype=None):
     value = as_array(fill_value, dtype)
     if value.shape:
@@ -1058,12 +1041,12 @@ def full(shape, fill_value, dtype=None):
 
 @offered
 def zeros(shape, dtype=float):
-    return full(shape, 0, dtype or float)
+    return full(shape, 0, float if dtype is None else dtype)
 
 
 @offered
 def ones(shape, dtype=float):
-    return full(shape, 1, dtype or float)
+    return full(shape, 1, float if dtype is None else dtype)
 
 
 @offered
@@ -1365,9 +1348,9 @@ def diff(a, n=1, axis=-1, prepend=None):
     if value.kind == "b" or n != 1:
         raise NotImplementedError("truth values, or differences of differences")
     if prepend is not None:
-        if value.ndim != 1:
+        if value.ndim != 1 or as_array(prepend).ndim > 1:
             raise NotImplementedError("prepend")
-        value = concatenate([atleast_1d(prepend), value])
+        value = concatenate([as_array(prepend).reshape(-1), value])
     after, before = between(value, axis)
     return after - before
 
@@ -1452,14 +1435,6 @@ def trace(a):
     if value.ndim < 2:
         raise ValueError("a matrix")
     return sum_(diag(value))
-
-
-@offered
-def tensordot(a, b, axes):
-    left, right = as_array(a), as_array(b)
-    if axes != 1 or left.ndim != 1:
-        raise NotImplementedError("other axes")
-    return (left @ right.reshape(right.shape[0], -1)).reshape(right.shape[1:])
 
 
 def matrices(value):
