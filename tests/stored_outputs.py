@@ -11,7 +11,7 @@ format_difference = nbval.plugin.IPyNbCell.format_output_compare
 def compare_outputs(cell, test, ref, skip_compare=None):
     """Compare outputs as nbval does, except for numbers that moved by a small amount.
 
-    :mod:`notebook_pages.moves` gives the limit.
+    `notebook_pages.moves` gives the limit.
     """
     for now, stored in zip(test, ref):
         _undo_small_moves(now.get("data", {}), stored.get("data", {}), cell.sanitize)

@@ -1,6 +1,6 @@
 """Add a chapter or a question with every part that it needs.
 
-The parts that the author must write are marked TO BE WRITTEN, and :mod:`tools.chapters` lists
+The parts that the author must write are marked TO BE WRITTEN, and `tools.chapters` lists
 those that remain. Run it with ``python -m tools.new``.
 """
 

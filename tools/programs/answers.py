@@ -3,7 +3,7 @@
 Run this in an environment that has the program. Each of the ``orientations`` comes as an axis and
 an angle, and the program itself makes it from these, or, for a camera, from what it sees. The
 answers go to standard output as JSON: the version, and for each line that was run the form of its
-numbers, as :data:`orientation_workbench.mismatch.table.KINDS` calls it, and the numbers, one
+numbers, as `orientation_workbench.mismatch.table.KINDS` calls it, and the numbers, one
 orientation after another. ``made`` are the matrices that the program makes of the card's own
 ``lines``.
 """

@@ -1,7 +1,7 @@
 """The exam edition: the book without worked solutions, and without sentences that lead to one.
 
 ``exam_edition: true`` in ``_config.yml`` makes it, or BOOK_EXAM=1 for one build. The contents leave
-out the pages of solutions (see :mod:`notebook_pages.paths`), so that nothing is made of them. This
+out the pages of solutions (see `notebook_pages.paths`), so that nothing is made of them. This
 module removes the sentences that refer to them.
 """
 

@@ -47,7 +47,7 @@ class Move(NamedTuple):
 
 
 def moves(stored, now):
-    """Return all numbers that differ between two texts as :class:`Move`, the largest first.
+    """Return all numbers that differ between two texts as `Move`, the largest first.
 
     >>> for move in moves("off by 0.1 and 2 rad", "off by 0.10000000000001700 and 3 rad"):
     ...     print(move, move.too_far)

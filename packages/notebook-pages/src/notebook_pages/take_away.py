@@ -40,7 +40,7 @@ def is_notebook(app, pagename, doctree):
 
 
 def first_words(title):
-    """The beginning of :func:`introduction`, by which it is found again."""
+    """The beginning of `introduction`, by which it is found again."""
     return f"> This is a page of *{title}*."
 
 

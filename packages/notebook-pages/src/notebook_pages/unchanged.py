@@ -61,7 +61,7 @@ def of_site() -> str:
 
 
 def is_unchanged(made_from: str) -> bool:
-    """Whether the sources and the site are those that :func:`note` recorded last."""
+    """Whether the sources and the site are those that `note` recorded last."""
     return STAMP.is_file() and STAMP.read_text("utf8") == made_from + of_site()
 
 

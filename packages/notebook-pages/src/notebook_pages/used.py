@@ -80,7 +80,7 @@ def names_imported(code: str, module: str = "") -> set[str]:
 
 
 def modules_imported(code: str, module: str = "") -> set[str]:
-    """Return the names of our modules that ``code`` imports, as :func:`names_imported` does."""
+    """Return the names of our modules that ``code`` imports, as `names_imported` does."""
     names = names_imported(code, module)
     ours = {name for name in names if file_of(name)}
     # Importing a.b imports a first.

@@ -1,7 +1,7 @@
 """Questions as their authors write them, and as we seal them.
 
 In the notebook with the solutions, the cell that checks an answer goes on, between nbgrader's marks
-for hidden tests, with a call of :func:`question`:
+for hidden tests, with a call of `question`:
 
 .. code-block:: python
 
@@ -153,7 +153,7 @@ class AuthoredQuestion:
     fixed : str
         Why the question has one answer for everybody.
     entries : dict
-        :class:`Entry` by fingerprint: the right answer and every mistake that differs from it.
+        `Entry` by fingerprint: the right answer and every mistake that differs from it.
     no_mistakes : list of str
         What the author says of mistakes that give the right answer.
     near : list
@@ -421,14 +421,14 @@ class AuthoredQuestion:
         return [sealing.name_of(sealing.slow_key(common.salt, text)).hex() for text in texts]
 
     def sealed(self, code: str | None = None, first: Pages | None = None) -> Sealed:
-        """What a student receives of the question, as :class:`Sealed`.
+        """What a student receives of the question, as `Sealed`.
 
         Parameters
         ----------
         code : str, optional
             What opens the worked solution for those who give up.
         first : Pages, optional
-            The pages of the first variant, :attr:`pages` of its question when it was sealed: what
+            The pages of the first variant, `pages` of its question when it was sealed: what
             stands there is not sealed once more.
 
         Of a question of an exam nothing is sealed: what a student receives would
@@ -647,7 +647,7 @@ def to_page(markdown: str, formula: Callable[[str], str] | None = None) -> str:
 
 
 def _demand_arguments(name: str, given: set[str]) -> None:
-    """Refuse an argument that :func:`question` does not have."""
+    """Refuse an argument that `question` does not have."""
     known = [
         parameter.name
         for function in (question, AuthoredQuestion.__init__)
@@ -767,7 +767,7 @@ def question(
     variant: Variant | None = None,
     **rest: Any,
 ) -> AuthoredQuestion:
-    """Build an :class:`AuthoredQuestion` from what its author wrote.
+    """Build an `AuthoredQuestion` from what its author wrote.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """The questions of a course for another system, each variant with its answers and solution.
 
-:mod:`coursework.authoring.exporting` writes them.
+`coursework.authoring.exporting` writes them.
 """
 
 from __future__ import annotations

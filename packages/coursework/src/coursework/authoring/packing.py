@@ -231,7 +231,7 @@ def _own_version(root: Path) -> str:
 
 
 def wheel(name: str, folder: str | Path) -> Path:
-    """Build one of :data:`DISTRIBUTIONS` out of the coursework that is
+    """Build one of `DISTRIBUTIONS` out of the coursework that is
     installed here, and give its file.
     """
     patterns, needs, summary = DISTRIBUTIONS[name]

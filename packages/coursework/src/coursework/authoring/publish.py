@@ -8,7 +8,7 @@ archive. So neither needs to know the other:
     [project.entry-points."coursework.pages"] name = "module:function"
 
 ``function(parts, workshop, site)`` makes the folder ``site``, and may work in the folder
-``workshop``. ``parts`` is what :func:`parts_of` describes, or a later format of it, which it must
+``workshop``. ``parts`` is what `parts_of` describes, or a later format of it, which it must
 refuse.
 """
 

@@ -3,7 +3,7 @@ and the questions sealed for them.
 
 The cells of each source are run, so that the right answers are what the solutions compute, and two
 things are made of it: the exercise notebook with blanks, and the file of sealed questions. The same
-sources give the same bytes. :mod:`coursework.authoring.packing` makes the archive that students
+sources give the same bytes. `coursework.authoring.packing` makes the archive that students
 download.
 """
 

@@ -291,7 +291,7 @@ def told_openly(question: AuthoredQuestion, secrets: Secrets) -> list[str]:
     ----------
     question : AuthoredQuestion
     secrets : dict
-        What :func:`secrets_of` gives.
+        What `secrets_of` gives.
     """
     openly = "A step of its ladder, which anybody can open with a few lines of code,"
     faults: list[str] = []

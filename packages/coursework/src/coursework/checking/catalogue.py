@@ -63,7 +63,7 @@ def mistakes(
     turns: Iterable[tuple[Any, Any]] = (),
     turned: tuple[Any, Any] | None = None,
 ) -> list[Mistake]:
-    """Return every mistake of the catalogue that applies to an answer, as :class:`Mistake`.
+    """Return every mistake of the catalogue that applies to an answer, as `Mistake`.
 
     Parameters
     ----------

@@ -4,7 +4,7 @@ Two forms of one expression have the same values, so values are compared instead
 is simplified, which could take a minute or never finish. They are computed with 40 digits, of which
 a check compares nine, so that rounding never distinguishes two ways of writing an answer.
 
-This reads only the plain data of :mod:`coursework.checking.plain`. It never builds a SymPy object
+This reads only the plain data of `coursework.checking.plain`. It never builds a SymPy object
 from them, and its work is bounded for any data.
 """
 
@@ -61,7 +61,7 @@ def values(nodes: Sequence[Node], point: Mapping[str, Number]) -> list[Result]:
     point : dict
         A number for each symbol, by name.
 
-    An error is kept as the value of its node and is raised by :func:`number`, since the branch of a
+    An error is kept as the value of its node and is raised by `number`, since the branch of a
     Piecewise that does not apply may be undefined.
     """
     results: list[Result] = []
@@ -88,7 +88,7 @@ def values(nodes: Sequence[Node], point: Mapping[str, Number]) -> list[Result]:
 
 
 def number(result: Result) -> Number:
-    """Return the number in one of the results of :func:`values`, or raise the error in it."""
+    """Return the number in one of the results of `values`, or raise the error in it."""
     if isinstance(result, Exception):
         raise result
     if isinstance(result, bool):

@@ -1,7 +1,7 @@
 """Read external JSON into typed values, with errors that name the key and the value.
 
-A reader takes a result of :func:`json.loads` and its location, and returns the value or raises
-:class:`Misread`. It keeps a number as it is, so that writing it again gives the same bytes.
+A reader takes a result of `json.loads` and its location, and returns the value or raises
+`Misread`. It keeps a number as it is, so that writing it again gives the same bytes.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 
 class Kind(NamedTuple):
-    """What is particular to one kind of question; each function is given a :class:`Question`.
+    """What is particular to one kind of question; each function is given a `Question`.
 
     Attributes
     ----------

@@ -1,7 +1,7 @@
 """The kinds of questions that no course owns: the entries of an answer, and the check of its form.
 
 Plug-ins build their kinds from these functions. An answer is the plain data of
-:mod:`coursework.checking.plain`; :mod:`coursework.checking.reading` processes its entries.
+`coursework.checking.plain`; `coursework.checking.reading` processes its entries.
 """
 
 import itertools

@@ -662,7 +662,7 @@ def _has_unit(part: object) -> bool:
 
 
 def _number_and_unit(answer: sympy.Expr, units: ModuleType) -> tuple[sympy.Expr, str]:
-    """Write an expression with quantities of :mod:`sympy.physics.units` in base units.
+    """Write an expression with quantities of `sympy.physics.units` in base units.
 
     The result is a number and the text of the unit.
     """
@@ -727,7 +727,7 @@ def read_plain(data: object) -> Plain:
     Raises
     ------
     NotPlain
-        The data are not a result of :func:`to_plain`.
+        The data are not a result of `to_plain`.
     """
     if not isinstance(data, dict) or set(data) != {"value", "nodes"}:
         raise NotPlain(DAMAGED)

@@ -10,7 +10,7 @@ Its folder ``sealed``, if it has one, holds sealed questions. These names
 in it are read, each if it is there:
 
 ``KINDS``
-    A :class:`coursework.checking.kind.Kind` for each further kind of question, by its name.
+    A `coursework.checking.kind.Kind` for each further kind of question, by its name.
 ``DEEDS``
     What the class did, for the instructor's report, by the note of a mistake: ``"conjugate": "gave
     the conjugate"``.

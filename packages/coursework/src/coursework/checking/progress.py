@@ -50,7 +50,7 @@ class Entry:
         The different wrong answers, hashed.
     help : str
         The help that was had before the answer was right, a key of
-        :data:`coursework.checking.reply.HELP`.
+        `coursework.checking.reply.HELP`.
     page : Place or None
         Where the hints of the last mistake stand.
     mistake : str
@@ -113,7 +113,7 @@ class Entry:
         )
 
     def as_json(self) -> dict[str, Json]:
-        """Return the JSON that :meth:`from_json` reads, without empty fields."""
+        """Return the JSON that `from_json` reads, without empty fields."""
         fields_as_json: dict[str, Json] = dict(self.more)
         for name, value in vars(self).items():
             if (

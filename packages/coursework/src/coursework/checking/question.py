@@ -1,7 +1,7 @@
 """A question as a student's computer knows it, its sealed part, and how both are read and written.
 
 JSON names a field as Python does, with spaces for underscores: ``either_sign`` is ``"either
-sign"``. Empty fields are left out. :mod:`coursework.checking.questions` reads the files of sealed
+sign"``. Empty fields are left out. `coursework.checking.questions` reads the files of sealed
 questions.
 """
 
@@ -49,7 +49,7 @@ class Variant:
     text : str
         Of the question, with ``{{places}}`` for what is shown.
     picture : str or None
-        As :func:`coursework.checking.variants.packed` makes it.
+        As `coursework.checking.variants.packed` makes it.
     names : tuple of str
         The names of all variants, where a student's variant is found by its name.
     edition : str
@@ -104,7 +104,7 @@ class Question:
     Attributes
     ----------
     kind : str
-        A key of :func:`coursework.checking.plugins.kinds`.
+        A key of `coursework.checking.plugins.kinds`.
     salt : str
         From which the points and the edges of the cells follow, and with which fingerprints are
         hashed.
@@ -210,7 +210,7 @@ class Question:
         )
 
     def as_json(self) -> dict[str, Json]:
-        """Return the JSON that :meth:`from_json` reads."""
+        """Return the JSON that `from_json` reads."""
         fields_as_json: dict[str, Json] = {}
         for name, value in vars(self).items():
             if name == "variant":
@@ -255,7 +255,7 @@ class KnownAnswer:
     Attributes
     ----------
     outcome : str
-        One of :data:`OUTCOMES`.
+        One of `OUTCOMES`.
     notes : tuple of Note
         The mistakes that lead to it.
     hints : tuple of str
@@ -318,7 +318,7 @@ class Locker:
     def as_json(self) -> dict[str, Json]:
         """Return the known answers.
 
-        :mod:`coursework.authoring.author` seals the solution and its place.
+        `coursework.authoring.author` seals the solution and its place.
         """
         cases: dict[str, Json] = {"cases": [answer.as_json() for answer in self.answers]}
         return cases | ({"after": written(self.after)} if self.after else {})
@@ -339,13 +339,13 @@ class Sealed:
         The name of the answer.
     worth : float
     lockers : str
-        As :func:`coursework.checking.sealing.pack` packs them.
+        As `coursework.checking.sealing.pack` packs them.
     pages, ladder : tuple of str
-        As :func:`coursework.checking.sealing.seal` seals them: the ladder consists of the hints of
+        As `coursework.checking.sealing.seal` seals them: the ladder consists of the hints of
         every question.
     others : (str, str) or None
         In the first variant: the salt that all variants share, and the names by which an answer is
-        recognised as right in one of them, as :func:`coursework.checking.sealing.pack_names` packs
+        recognised as right in one of them, as `coursework.checking.sealing.pack_names` packs
         them.
     """
 
@@ -378,7 +378,7 @@ class Sealed:
         )
 
     def as_json(self) -> dict[str, Json]:
-        """Return the JSON that :meth:`from_json` reads."""
+        """Return the JSON that `from_json` reads."""
         more = {"answer": self.answer, "pages": written(self.pages), "ladder": written(self.ladder)}
         more["others"] = written(self.others)
         sealed: dict[str, Json] = {"lockers": self.lockers, "worth": self.worth}

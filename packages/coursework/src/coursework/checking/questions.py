@@ -138,7 +138,7 @@ def _file(notebook: str, variant: int = 0) -> dict[str, dict[str, Json]]:
 
 
 def _on_the_first(first: Mapping[str, Json], own: Mapping[str, Json]) -> dict[str, Json]:
-    """Complete a variant, stored as its differences from the first one (see :func:`beside`)."""
+    """Complete a variant, stored as its differences from the first one (see `beside`)."""
     pages = [
         page
         for variant_fields in (first, own)

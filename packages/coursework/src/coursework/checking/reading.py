@@ -11,7 +11,7 @@ opened locker contains the right numbers, with which an answer is compared to th
 
 The student's check, which compares fingerprints through a slow hash, and the grading, which
 compares them directly, use the same functions. They see only the plain data of
-:mod:`coursework.checking.plain`.
+`coursework.checking.plain`.
 """
 
 import functools
@@ -69,7 +69,7 @@ def read(question: Question, plain: Plain) -> Reading:
     ----------
     question : Question
     plain : dict
-        The answer as :func:`coursework.checking.plain.to_plain` gives it.
+        The answer as `coursework.checking.plain.to_plain` gives it.
 
     Raises
     ------
@@ -163,7 +163,7 @@ def distance(question: Question, numbers: Sequence[Number], right: Sequence[Numb
 def within(
     question: Question, numbers: Sequence[Number], right: Sequence[Number], share: float = 1
 ) -> bool:
-    """Whether an answer is within a share of the tolerance, faster than :func:`distance` if not."""
+    """Whether an answer is within a share of the tolerance, faster than `distance` if not."""
     absolute, relative = tolerances(question)
     return all(
         abs(number - right_number) <= share * (absolute + relative * abs(right_number))

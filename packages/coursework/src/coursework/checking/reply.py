@@ -59,7 +59,7 @@ class Reply:
     ----------
     question : str
     outcome : str
-        A key of :data:`OUTCOMES`.
+        A key of `OUTCOMES`.
     note : str
         The mistake, or the fault of the form, in a few words; empty where there is none.
     messages : list of str
@@ -73,7 +73,7 @@ class Reply:
     tried : list of str
         A few digits of each wrong answer that the record knows of, the newest last.
     help : str
-        The help that was had before the answer was right, a key of :data:`HELP`; empty without any.
+        The help that was had before the answer was right, a key of `HELP`; empty without any.
     details : dict
         What the message of the mistake needed to know.
     sibling : str

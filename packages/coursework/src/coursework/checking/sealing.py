@@ -141,7 +141,7 @@ def open_locker(lockers: str, key: bytes) -> tuple[int, int | None, bytes] | Non
     """Open the locker of a key: its outcome, its page, and the key of that; or give ``None``.
 
     A page tells the mistakes itself. Where there is none, it is ``None``, and what stands in place
-    of its key says which mistakes they are: :func:`mistakes_in` reads it.
+    of its key says which mistakes they are: `mistakes_in` reads it.
 
     Raises
     ------
@@ -222,7 +222,7 @@ def seal(content: object, key: bytes) -> str:
 
 
 def unseal(sealed: str, key: bytes) -> Any:
-    """Open what :func:`seal` locked.
+    """Open what `seal` locked.
 
     Raises
     ------
@@ -249,7 +249,7 @@ def shorten(text: str, words: str) -> str:
 
 
 def lengthen(short: str, words: str) -> str:
-    """The text of which :func:`shorten` made a short one."""
+    """The text of which `shorten` made a short one."""
     unpacker = zlib.decompressobj(-15, zdict=words.encode("utf8"))
     return unpacker.decompress(base64.b85decode(short)).decode("utf8")
 

@@ -36,7 +36,7 @@ class AsJson:
 
     @classmethod
     def from_json(cls, value: object, where: str = "") -> Self:
-        """Read what :meth:`as_json` wrote; fields that nobody asks for are ignored.
+        """Read what `as_json` wrote; fields that nobody asks for are ignored.
 
         Raises
         ------
@@ -51,7 +51,7 @@ class AsJson:
         return cls(**known)
 
     def as_json(self) -> dict[str, Json]:
-        """What :meth:`from_json` reads."""
+        """What `from_json` reads."""
         return {
             _key(field): written(getattr(self, field.name))
             for field, _ in _readers(type(self))  # type: ignore[arg-type]

@@ -64,7 +64,7 @@ class Remembered(AsJson):
     tried : tuple of str
         A few digits of each that was wrong.
     help : str
-        The help that was had before it was right, a key of :data:`coursework.checking.reply.HELP`;
+        The help that was had before it was right, a key of `coursework.checking.reply.HELP`;
         or nothing.
     """
 
@@ -154,7 +154,7 @@ class Mark(AsJson):
     decided : mapping or None
         Who decided, when, and the decision.
     appeals : tuple of mappings
-        As :meth:`coursework.grading.judging.journal.Appealed.as_json` tells them.
+        As `coursework.grading.judging.journal.Appealed.as_json` tells them.
     """
 
     outcome: str

@@ -1,7 +1,7 @@
 """A page to judge in: answer by answer, or all equal answers at once; on this machine only.
 
 It is made from the records, and what is decided goes into the journal
-(:mod:`coursework.grading.judging.journal`); nothing is uploaded. Whoever knows the address may
+(`coursework.grading.judging.journal`); nothing is uploaded. Whoever knows the address may
 decide, so it holds a secret, and a request that another page or another name for this machine sent
 is refused. What a student wrote is shown as text and mathematics; a policy forbids the browser to
 run, load or send anything that is in it.

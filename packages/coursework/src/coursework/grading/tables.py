@@ -31,7 +31,7 @@ def as_cell(value: object) -> str:
 
 
 def as_written(cell: str) -> str:
-    """The text that :func:`as_cell` marked."""
+    """The text that `as_cell` marked."""
     plain = cell.removeprefix("'")
     return (
         plain

@@ -51,7 +51,7 @@ def side_by_side(
     number : int
         Of processes.
     prepare : function
-        Called once in each process, with an :class:`contextlib.ExitStack`: gives the function that
+        Called once in each process, with an `contextlib.ExitStack`: gives the function that
         does a task.
     errors : collection of type
         Exceptions of one text that may come of a task, and are raised here.

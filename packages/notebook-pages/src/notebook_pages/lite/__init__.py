@@ -1,6 +1,6 @@
 """JupyterLite: the notebooks of the book in the reader's browser, in the site's folder ``lite``.
 
-It shares the interpreter and the wheels of the folder ``runtime`` (see :mod:`notebook_pages.live`),
+It shares the interpreter and the wheels of the folder ``runtime`` (see `notebook_pages.live`),
 and adds the packages that a notebook's kernel needs. A lock file of its own lists them all, so that
 a plain ``import`` works.
 """

@@ -1,7 +1,7 @@
 """What keeps a student's code apart from the machine, in layers that
 are tried before they are trusted.
 
-Each layer alone stops something; together they must stop every attempt of :data:`ATTEMPTS`, and it
+Each layer alone stops something; together they must stop every attempt of `ATTEMPTS`, and it
 is tried at each start whether they do. Student code is not run otherwise.
 
 namespaces
@@ -17,7 +17,7 @@ landlock
     local sockets and signals too. Does not cover UDP, does not hide that a file exists, and does
     not cover changes of modes and owners: the next layer does.
 seccomp
-    A list of system calls (see :mod:`coursework.grading.execution.system_calls`): no socket of any
+    A list of system calls (see `coursework.grading.execution.system_calls`): no socket of any
     kind, no new process, no other program, no signal to others, no change of modes. Cannot tell one
     file from another.
 resource limits

@@ -19,7 +19,7 @@ OUTCOMES = ("done", "error", "timeout", "memory")
 
 #: What was begun or has ended: ``["cell", number]`` or ``["answer", name]``.
 Step = list[str | int]
-#: Which of these a record has is what :meth:`Records.well_formed` looks at.
+#: Which of these a record has is what `Records.well_formed` looks at.
 Record = TypedDict(
     "Record",
     {

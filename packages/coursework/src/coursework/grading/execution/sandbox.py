@@ -1,15 +1,15 @@
 """Runs students' notebooks in isolation and hands back their answers as plain data.
 
-:func:`run_notebooks` takes jobs and gives results, both plain JSON. Three kinds of process take
+`run_notebooks` takes jobs and gives results, both plain JSON. Three kinds of process take
 part:
 
 - this one, which is trusted: it starts warm parents, keeps the time, reads the records strictly
-  (:mod:`coursework.grading.execution.records`) and puts the results together. It never runs or
+  (`coursework.grading.execution.records`) and puts the results together. It never runs or
   unpickles anything of a student's, and never repeats it to the console;
-- a warm parent for each worker (:mod:`coursework.grading.execution.warm_parent`), which only forks;
-- a child for each notebook, confined (:mod:`coursework.grading.execution.isolation`), in which the
+- a warm parent for each worker (`coursework.grading.execution.warm_parent`), which only forks;
+- a child for each notebook, confined (`coursework.grading.execution.isolation`), in which the
   cells run
-  (:mod:`coursework.grading.execution.notebook`).
+  (`coursework.grading.execution.notebook`).
 
 No verdict is made here, and no right answer is here: marks are decided elsewhere, from the results.
 
@@ -63,7 +63,7 @@ class Job(TypedDict):
     """A notebook to be run, as JSON.
 
     Of each question it says the answer's ``"variable"``, and the ``"calls"`` and ``"secret calls"``
-    of a function, as :func:`coursework.grading.judging.marking.asked_of_sandbox` does. The
+    of a function, as `coursework.grading.judging.marking.asked_of_sandbox` does. The
     ``files`` beside it are in base64.
     """
 
@@ -136,7 +136,7 @@ class Sandbox:
     allow_weak_isolation : bool
         Run student code although some of what must be stopped is not. Every result says so.
     without : collection of str
-        Layers to leave out, of :data:`coursework.grading.execution.isolation.LAYERS`; then the
+        Layers to leave out, of `coursework.grading.execution.isolation.LAYERS`; then the
         isolation is weak.
 
     Raises
@@ -830,7 +830,7 @@ def run_notebooks(
     workers : int
         How many notebooks run at a time; each worker is a warm parent of its own.
     limits, allow_weak_isolation, without
-        As for :class:`Sandbox`.
+        As for `Sandbox`.
 
     Yields
     ------

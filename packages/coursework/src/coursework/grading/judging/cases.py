@@ -1,7 +1,7 @@
 """What a student was asked, kept beside what the student answered.
 
 A question may be mended in mid-term, a variant of it taken out, a call of a function exchanged. An
-answer is judged by what its author saw all the same: a :class:`Case` names the variant by what is
+answer is judged by what its author saw all the same: a `Case` names the variant by what is
 given in it, not by its number, and the contract, the question as it stood then, by its version.
 Contracts lie in the folder of results, one file each.
 """

@@ -66,7 +66,7 @@ class Contract(AsJson):
         The share of the points that a mistake earns, by its note.
     question : Question
     known : mapping
-        The locker of each known answer, by its fingerprint: :meth:`locker` reads it.
+        The locker of each known answer, by its fingerprint: `locker` reads it.
     right : tuple of str or None
         The numbers of an exact right answer.
     plain : Plain or None

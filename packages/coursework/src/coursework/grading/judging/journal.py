@@ -1,9 +1,9 @@
 """The journal: all that happened to marks, in lines that are only ever added.
 
-Each line of ``journal.jsonl`` is an event, which any editor shows: marks that were :class:`Given`,
-a :class:`Decision` on one answer, a step of an :class:`Appeal`, what a line of a rubric is worth
-from now on (:class:`Worth`), or marks that were :class:`Exported`. The marks of a class are those
-that were given last, and nothing else moves them (:mod:`coursework.grading.judging.laboratory`).
+Each line of ``journal.jsonl`` is an event, which any editor shows: marks that were `Given`,
+a `Decision` on one answer, a step of an `Appeal`, what a line of a rubric is worth
+from now on (`Worth`), or marks that were `Exported`. The marks of a class are those
+that were given last, and nothing else moves them (`coursework.grading.judging.laboratory`).
 
 Of several decisions on the same answer the last one counts, and none is ever removed. Graders take
 back a decision of their own by entering another one that says so, and the decision before it counts
@@ -74,7 +74,7 @@ class OnAnswer(Event):
     ----------
     student, assignment, question : str
     answer : str
-        The :func:`digest_of_answer` of what was looked at.
+        The `digest_of_answer` of what was looked at.
     contract : str
         The version of the question by which the answer was judged when it was looked at; empty
         where nobody knows.
@@ -129,7 +129,7 @@ class Decision(OnAnswer):
 @dataclass(frozen=True, kw_only=True)
 class Appeal(OnAnswer):
     """A step of an appeal against a mark: it is raised, taken up, or
-    rejected. A :class:`Decision` accepts it.
+    rejected. A `Decision` accepts it.
 
     Attributes
     ----------

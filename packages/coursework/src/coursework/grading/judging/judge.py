@@ -1,7 +1,7 @@
 """The judge, in a process of its own: an answer that takes it too long, or too
 much memory, costs nobody else a mark.
 
-What is judged is plain data, and working it out is bounded (:mod:`coursework.checking.evaluate`).
+What is judged is plain data, and working it out is bounded (`coursework.checking.evaluate`).
 This is for what nobody thought of: an answer under which the process ends is undecided and named,
 and another process goes on with the next one.
 """

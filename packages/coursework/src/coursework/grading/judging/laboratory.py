@@ -2,7 +2,7 @@
 and who loses, and a person agrees.
 
 A mark is new, or it was given before. New marks are given at once. One that was given moves only
-through :func:`settle`, whatever would move it: work that was handed in again, a question that was
+through `settle`, whatever would move it: work that was handed in again, a question that was
 mended, another worth, a decision, a policy, a newer version of the software. What a mended question
 may do to marks is for its author to choose, as a policy: nobody loses by it, all who had a faulty
 variant have its points, or it counts for nobody.

@@ -60,7 +60,7 @@ UNJUDGED = Mark(
         "decide.",
     ),
 )
-#: A figure in the text of a question, as :func:`coursework.checking.variants.image` writes it.
+#: A figure in the text of a question, as `coursework.checking.variants.image` writes it.
 PICTURE = re.compile(r'<p><img alt="[^"]*" width="[^"]*" src="[^"]*"></p>')
 #: How a cell ends that a limit ended: what is missing then may have been lost to it.
 BY_A_LIMIT = ("timeout", "memory", "disk", "output")
@@ -111,7 +111,7 @@ def of_student(
     Parameters
     ----------
     questions : dict
-        As :func:`load_questions` gives them.
+        As `load_questions` gives them.
     identity : str
         Of the student, as the roster has it: what a notebook says of itself does not count.
     record : dict, optional
@@ -120,7 +120,7 @@ def of_student(
     contracts : Contracts, optional
         The questions as they stood then.
     earlier : mapping, optional
-        As :func:`earlier_variants` gives them.
+        As `earlier_variants` gives them.
     shows : function, optional
         Whether the student's notebook shows a text.
 
@@ -496,7 +496,7 @@ def _by_a_sibling(contract: Contract, found: Mark, sibling: str) -> Mark:
 def judge(
     name: str, question: Asked, answer: Answer, finished: bool = True, limited: bool = False
 ) -> tuple[Reply, str]:
-    """Give the :class:`coursework.checking.reply.Reply` to an answer,
+    """Give the `coursework.checking.reply.Reply` to an answer,
     and its fingerprint if it has one.
     """
     state, contract = answer.outcome, question.contract

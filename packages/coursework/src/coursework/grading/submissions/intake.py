@@ -6,7 +6,7 @@ Understood are a folder of notebooks, a folder for each student, nbgrader's
 unpacked) that Canvas, Moodle, Brightspace and Blackboard hand out; in each of them also an archive
 that a student packed. Everything here was named and written by strangers. What is not an honest
 notebook is refused by its name, with a reason, and the rest goes on: no link is followed, nothing
-is unpacked on disk, nothing is repaired. :mod:`coursework.grading.submissions.identity` says whose
+is unpacked on disk, nothing is repaired. `coursework.grading.submissions.identity` says whose
 it is.
 """
 
@@ -187,12 +187,12 @@ class Notebook(NamedTuple):
 
     @property
     def remembered(self) -> dict[str, Remembered]:
-        """What its outputs remember of the way to an answer: see :func:`remembered_in`."""
+        """What its outputs remember of the way to an answer: see `remembered_in`."""
         return remembered_in(_unchanged(self))
 
     @property
     def pictures(self) -> dict[str, list[str]]:
-        """What its cells drew, as it keeps that: see :func:`pictures_in`."""
+        """What its cells drew, as it keeps that: see `pictures_in`."""
         return pictures_in(_unchanged(self))
 
     def shows(self, text: str) -> bool:

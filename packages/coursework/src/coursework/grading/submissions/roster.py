@@ -62,7 +62,7 @@ class Person:
     Attributes
     ----------
     called : mapping of tuples of str
-        What the roster calls them, by a key of :data:`WORDS`.
+        What the roster calls them, by a key of `WORDS`.
     row : mapping of str
         Their whole line, by the names of the columns in small letters.
     local_part : str
@@ -106,7 +106,7 @@ class Roster:
     ----------
     path : path
         A table of comma-separated values, or the gradebook that Canvas, Moodle or Brightspace
-        exports. Read are the columns of :data:`COLUMNS`; ``handed in as`` holds names of folders or
+        exports. Read are the columns of `COLUMNS`; ``handed in as`` holds names of folders or
         files, separated by semicolons, for what cannot be matched otherwise.
     groups : mapping, optional
         The members of each group: what fits several of one group is the group's.
