@@ -63,6 +63,9 @@ def archive(path, *entries):
         ("student-017/work/turns.ipynb", "student-017", {}, False),
         ("student-017.ipynb", "student-017", {}, False),
         ("student-017_turns.ipynb", "student-017", {}, False),
+        # As browsers save what they do not know.
+        ("student-017/turns.ipynb.txt", "student-017", {}, False),
+        ("student-017_turns.ipynb.json", "student-017", {}, False),
         ("turns (student-017).ipynb", "student-017", {}, False),
         ("submitted/student-017/turns/turns.ipynb", "student-017", {}, False),
         (

@@ -262,7 +262,7 @@ def take_in(
                 )
             )
             break
-        files.append((name, when, read))
+        files.append((ADDED.sub("", name), when, read))
     contents = {name: read for name, _, read in files}
     layout = Layout(
         list(contents), assignments, repositories, roster, lambda name: contents[name](), student
@@ -271,7 +271,7 @@ def take_in(
     for name, when, read in files:
         if name.lower().endswith(".zip"):
             for inner, data in _inside_archive(name, read, refused):
-                _take(found, others, refused, layout, inner, when, data, name)
+                _take(found, others, refused, layout, ADDED.sub("", inner), when, data, name)
         else:
             _take(found, others, refused, layout, name, when, read, name)
     have = {one.claim.source for one in found}
@@ -297,6 +297,10 @@ def take_in(
                 can = " The notebook in the same folder can read it." if source in have else ""
                 refused.append(Refused(name, whose, why + can))
     return notebooks, [_of_whom(one, layout, roster) for one in refused]
+
+
+#: A browser to which notebooks are unknown saves them with an ending of its own.
+ADDED = re.compile(r"(?<=\.ipynb)\.(?:txt|json)$", re.IGNORECASE)
 
 
 def _of_whom(refused: Refused, layout: Layout, roster: Roster | None) -> Refused:
