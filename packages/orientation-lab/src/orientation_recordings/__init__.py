@@ -172,7 +172,7 @@ def xsens() -> Recording:
     Returns
     -------
     Recording
-        50 samples a second; the magnetic field in the maker's unit, about 1 for the Earth's.
+        50 samples a second; the magnetic field in the manufacturer's unit, about 1 for the Earth's.
     """
     rows = table("xsens")
     time = np.arange(len(rows)) / XSENS_RATE

@@ -29,7 +29,7 @@ class Edges(traitlets.TraitType):
         for frame, reference, *_ in value:
             if reference not in known:
                 raise traitlets.TraitError(
-                    f"edges turns {frame} in {reference}, but there is no frame {reference}; "
+                    f"edges orients {frame} in {reference}, but there is no frame {reference}; "
                     f"the frames are {known}"
                 )
             if frame in known or frame not in LETTERS:

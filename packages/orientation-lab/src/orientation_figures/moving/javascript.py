@@ -192,7 +192,9 @@ def statement(node, changing):
             return f"const {camel(node.name)} = ({parameters(node.args)}) => {block(node)};"
         case ast.Continue():
             return "continue;"
-    raise ValueError(f"a picture contains {ast.unparse(node)!r}, which is not translated")
+    raise ValueError(
+        f"a picture uses {ast.unparse(node)!r}, which cannot be translated to JavaScript"
+    )
 
 
 def within(node, least=4):
@@ -263,7 +265,9 @@ def expression(node):
             if ast.unparse(first.target) == ast.unparse(node.elt):
                 return over(first)
             return f"{over(first)}.map(({expression(first.target)}) => {expression(node.elt)})"
-    raise ValueError(f"a picture contains {ast.unparse(node)!r}, which is not translated")
+    raise ValueError(
+        f"a picture uses {ast.unparse(node)!r}, which cannot be translated to JavaScript"
+    )
 
 
 def over(part):

@@ -15,7 +15,7 @@ NOTHING_KNOWN = dict.fromkeys(("program", "kind", "sequence", "order", "way", TU
 # Typical cases, most with the numbers of a public thread: the numbers of both programs, and the
 # known facts about each.
 EXAMPLES = {
-    "A quaternion, scalar last for scalar first": (
+    "A quaternion with the scalar last, read as scalar first": (
         "0.9205 0.3602 -0.0702 0.1343\n0.7011 -0.2150 0.5873 0.3421",
         "0.3602 -0.0702 0.1343 0.9205\n-0.2150 0.5873 0.3421 0.7011",
     ),
@@ -115,12 +115,12 @@ class WorkbenchFigure(MovingFigure):
     kind = "workbench"
     sheet = (-330, -172, 330, 172)
     room = (1070, 1175)
-    first = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][0]).tag(
-        sync=True, state=True
-    )
-    second = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][1]).tag(
-        sync=True, state=True
-    )
+    first = traitlets.Unicode(
+        EXAMPLES["A quaternion with the scalar last, read as scalar first"][0]
+    ).tag(sync=True, state=True)
+    second = traitlets.Unicode(
+        EXAMPLES["A quaternion with the scalar last, read as scalar first"][1]
+    ).tag(sync=True, state=True)
     first_is = Known(NOTHING_KNOWN).tag(sync=True, state=True)
     second_is = Known(NOTHING_KNOWN).tag(sync=True, state=True)
     noise = Numbers(0.0, (), 30.0, smallest=0.0).tag(sync=True, state=True)

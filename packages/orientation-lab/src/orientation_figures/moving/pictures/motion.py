@@ -237,7 +237,7 @@ def plot(figure, Sheet):
         f"{times[-1]:.1f} seconds. "
         "The top plot shows, on a logarithmic scale, how far each description departs from "
         "orthogonality. The middle plot shows its error relative to the reference. The bottom "
-        "plot shows how far the Euler angles are from gimbal lock, which is never less than "
+        "plot shows how far the Euler angles are from gimbal lock: never less than "
         f"{margin.min():.0f} degrees. "
         f"At the end: {last}."
     )
