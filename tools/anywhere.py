@@ -3,7 +3,7 @@
 ``python -m tools.anywhere`` runs every cell, every release and every doctest as other processors
 would: with each kernel of OpenBLAS, without the instructions that NumPy would not have there, on
 one thread and on many. It also runs the notebooks that need only SymPy in WebAssembly, in the
-Python of browsers. A table shows which numbers moved and by how much.
+Python of browsers. A table shows which numbers changed and by how much.
 """
 
 import argparse
@@ -326,7 +326,7 @@ def main():
     possible, impossible = machines()
     faults, first = [], None
     print(
-        "| machine | cells that moved | the largest move | doctests that fail "
+        "| machine | cells that changed | largest change | doctests that fail "
         "| releases that differ |"
     )
     print("| --- | ---: | --- | ---: | ---: |")

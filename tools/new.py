@@ -285,12 +285,12 @@ def new_chapter(name, title, after):
         ],
     )
     return [
-        f"made     {chapter}: the chapter",
-        f"made     {source}: its exercises, with their solutions",
+        f"created  {chapter}: the chapter",
+        f"created  {source}: its exercises, with their solutions",
         f"added to _toc.yml and {INDEX}: both pages, after those of {after}",
         f"added to {CHAPTERS_SOURCE}: the question chapters/{name}, which the chapter asks",
         f"added to {SOLUTIONS[-1]}: its worked solution",
-        f"added to {SPOKEN}: room for three questions to ask aloud",
+        f"added to {SPOKEN}: space for three questions to ask aloud",
     ]
 
 

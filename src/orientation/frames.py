@@ -302,7 +302,7 @@ class Frames:
         if edges is None:
             raise ValueError(
                 f"no path of orientations connects {target} and {source}. First orient one of them "
-                "with respect to the other, or to a frame connected with it"
+                "with respect to the other, or to a frame connected to it"
             )
         return edges
 

@@ -279,7 +279,7 @@ def test_a_mistake_is_found_beside_a_slip():
     assert reply_to(matrix, lockers, mistaken.T) == (
         "wrong",
         "transposed, and authored",
-        f"Two things at once: {said_of_slip} Known.",
+        f"Two mistakes at once: {said_of_slip} Known.",
     )
     twice = reply_to(matrix, lockers, (mistaken + right).T)
     assert twice[:2] == ("wrong", "rounded too far") and "more than allowed" in twice[2]

@@ -288,7 +288,7 @@ def nested(depth):
 
 
 def neighbours(count):
-    """A frame with so many connected with it, itself among them."""
+    """A frame with so many connected to it, itself among them."""
     first = me.ReferenceFrame("R0")
     for place in range(1, count):
         me.ReferenceFrame(f"R{place}").orient_explicit(first, sm.eye(3))
@@ -307,7 +307,7 @@ BORDERS = {
     "form": (lambda count: sm.ZeroMatrix(1, count), 400, "matrix is 1 × 401"),
     "of mpmath": (lambda count: mpmath.matrix(1, count), 400, "matrix is 1 × 401"),
     "frames": (frames, 12, "more than 12 frames"),
-    "neighbours": (neighbours, 30, "This frame is connected with more than 30 others"),
+    "neighbours": (neighbours, 30, "This frame is connected to more than 30 others"),
     "inverse": (lambda size: sm.Inverse(numbers(size, size, 1)), 4, "inverse of a matrix of this"),
     "text": ("a".__mul__, 2000, "string of 2001 characters"),
     "name": (lambda count: sm.Symbol("a" * count), 2000, "string of 2001 characters"),

@@ -216,7 +216,7 @@ def test_what_is_sealed_is_fetched_from_where_the_pages_lie(status, tmp_path, mo
     if status == 200:
         assert fetched(tmp_path / "where", "one.json") == "{}"
     else:
-        why = "the server says 404" if status else "no network"
+        why = "the server answered 404" if status else "no network"
         with pytest.raises(RuntimeError) as error:
             fetched(tmp_path / "where", "one.json")
         message = f"We could not fetch your numbers from {address} ({why}). Are you online?"

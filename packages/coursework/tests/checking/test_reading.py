@@ -206,7 +206,7 @@ OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
             IN_A,
             B.x,
             "frame",
-            "This vector is not connected with the question's frame `A`.",
+            "This vector is not connected to the question's frame `A`.",
         ),
         (
             EXPRESSION,

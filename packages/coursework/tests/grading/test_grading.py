@@ -404,7 +404,7 @@ def test_the_report_tells_what_was_misunderstood(course):
     text = " ".join(text.split())
     assert "15 students" in text
     assert "7 % gave the transpose in question 1, about x (1 of 15)" in text
-    assert "7 % gave the opposite in question 2, sum (1 of 15)" in text
+    assert "7 % gave the negative in question 2, sum (1 of 15)" in text
     assert "link, which we did not follow" in text and "not well-formed JSON" in text
     assert "agrees with the right one to about three digits" in text
 

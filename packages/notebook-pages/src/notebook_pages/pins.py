@@ -197,7 +197,7 @@ def main():
     for path, text in new.items():
         changed = path.read_text("utf8") != text
         path.write_text(text, "utf8")
-        print(f"{path.relative_to(REPOSITORY)}: {'renewed' if changed else 'unchanged'}")
+        print(f"{path.relative_to(REPOSITORY)}: {'updated' if changed else 'unchanged'}")
     print("Now run .ci/run")
 
 

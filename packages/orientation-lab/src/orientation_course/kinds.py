@@ -55,7 +55,7 @@ def _dcm(question: Question, value: Value) -> list[int]:
             connected = [other for other in others if other != name]
             raise Fault(
                 "frame",
-                f"This is the frame `{name}`, connected with {listed(connected) or 'no other'}. "
+                f"This is the frame `{name}`, connected to {listed(connected) or 'no other'}. "
                 f"Give the orientation of `{target}` with respect to `{source}`.",
             )
         value = others[source]
@@ -65,7 +65,7 @@ def _dcm(question: Question, value: Value) -> list[int]:
         if not all(source in by_frame(row) for row in rows):
             raise Fault(
                 "frame",
-                f"These vectors are not connected with the frame `{source}` of the question.",
+                f"These vectors are not connected to the frame `{source}` of the question.",
             )
         value = ["list", [by_frame(row)[source] for row in rows]]
     return row_entries(value, 3, 3, "A matrix of size 3 × 3")

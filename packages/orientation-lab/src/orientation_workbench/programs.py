@@ -462,7 +462,7 @@ def program_named(words):
     if len(found) != 1:
         which = ", ".join(found or PROGRAMS)
         raise ValueError(
-            f"{words!r} fits several programs: {which}"
+            f"{words!r} matches several programs: {which}"
             if found
             else f"unknown program {words!r}: {which}"
         )

@@ -336,9 +336,9 @@ def test_a_frame_is_not_said_to_be_connected_with_itself():
     A, B = ReferenceFrame("A"), ReferenceFrame("B")
     B.orient_axis(A, A.z, theta)
     [message] = KINDS["symbols in a matrix"].reply_to(to_plain(B)).messages
-    assert "This is the frame `B`, connected with `A`." in message
+    assert "This is the frame `B`, connected to `A`." in message
     [message] = KINDS["symbols in a matrix"].reply_to(to_plain(ReferenceFrame("C"))).messages
-    assert "connected with no other." in message
+    assert "connected to no other." in message
 
 
 @pytest.mark.parametrize(("digits", "rounded"), [(2, True), (1, False)])

@@ -36,7 +36,7 @@ ARGUMENTS = {
         "create a small course, ready to use",
         [
             argument(
-                "course", metavar="COURSE", help="the folder to create, which also names the course"
+                "course", metavar="COURSE", help="the folder to create; its name becomes the title"
             )
         ],
     ),
@@ -75,7 +75,7 @@ ARGUMENTS = {
             argument(
                 "--room",
                 action="store_true",
-                help="also download all packages, for a room without a network",
+                help="also download all packages, for use without a network",
             ),
         ],
     ),

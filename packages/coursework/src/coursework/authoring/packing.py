@@ -69,7 +69,7 @@ README = """Exercises of {title}
    coursework": the project of that name on the index belongs to somebody else.
 
    The folder "environment" contains Python and the packages that the exercises need, separate
-   from your system's Python. If somebody gave you a folder "wheels" for a room without a network,
+   from your system's Python. If somebody gave you a folder "wheels" for use without a network,
    the last line is
 
        python -m pip install --no-index --find-links wheels -r requirements.txt

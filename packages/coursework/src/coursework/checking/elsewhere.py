@@ -15,7 +15,7 @@ def fetched(file: Traversable, name: str) -> str:
         request.send()
         if request.status == 200:
             return str(request.responseText)
-        why = f"the server says {request.status}"
+        why = f"the server answered {request.status}"
     except Exception as error:  # the browser's error without a network
         why = str(error)
     raise RuntimeError(f"We could not fetch your numbers from {address} ({why}). Are you online?")

@@ -181,7 +181,7 @@ def _vector(question: Question, value: Value) -> list[int]:
         if frame not in by_frame(value):
             raise Fault(
                 "frame",
-                f"This vector is not connected with the question's frame `{frame}`.",
+                f"This vector is not connected to the question's frame `{frame}`.",
             )
         value = by_frame(value)[frame]
     return components(value, question.length or 3, expected)

@@ -705,12 +705,12 @@ def _number_and_unit(answer: sympy.Expr, units: ModuleType) -> tuple[sympy.Expr,
 
 
 def _connected(frames: Iterable[CoordinateFrame]) -> list[CoordinateFrame]:
-    """Return all frames connected with the given ones, from SymPy's record of neighbours."""
+    """Return all frames connected to the given ones, from SymPy's record of neighbours."""
     connected = list(dict.fromkeys(frames))
     for frame in connected:
         connected.extend(neighbour for neighbour in frame._dcm_dict if neighbour not in connected)
         if len(connected) > 30:
-            raise NotPlain("This frame is connected with more than 30 others.")
+            raise NotPlain("This frame is connected to more than 30 others.")
     return connected
 
 

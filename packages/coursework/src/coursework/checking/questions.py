@@ -523,7 +523,7 @@ def _not_known(
                 # An answer that is right after undoing a slip twice is the right answer itself,
                 # except for the last digits.
                 return _close(name, question)
-            message_text = f"Two things at once: {why} {message(question, note, details)}"
+            message_text = f"Two mistakes at once: {why} {message(question, note, details)}"
             return Reply(name, "wrong", f"{slip}, and {note}", [message_text], details=details)
     # Report rounding first if it is the only fault, and not that the value is wrong.
     few = _few_digits(question, plain)

@@ -192,9 +192,9 @@ def say(
     """
     for name, number in sorted(handed_in.left_alone.items()):
         print(
-            f"We leave {number_of(number, 'notebook')} of {name} alone"
+            f"We skip {number_of(number, 'notebook')} for {name}"
             + (
-                f": to grade {name}, add [assignments.{name}] to term.toml."
+                f": to grade it, add [assignments.{name}] to term.toml."
                 if term.assignments and name not in term.assignments
                 else "."
             ),

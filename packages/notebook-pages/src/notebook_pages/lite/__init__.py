@@ -56,7 +56,7 @@ NUMERICAL = (
     "import matplotlib\nimport numpy",
 )
 PLACES = {
-    "official": "`cdn.jsdelivr.net`, where Pyodide's makers serve them",
+    "official": "`cdn.jsdelivr.net`, where the Pyodide project serves them",
     "folder": "the server of these pages",
 }
 

@@ -79,7 +79,7 @@ def official_lock():
 
 
 def official_address():
-    """Return the address at which Pyodide's makers serve the packages of their list."""
+    """Return the address at which the Pyodide project serves the packages of its list."""
     version = json.loads((PYODIDE / "package.json").read_text("utf8"))["version"]
     return f"https://cdn.jsdelivr.net/pyodide/v{version}/full/"
 

@@ -303,8 +303,8 @@ class _Bench:
             self.say(
                 "size of the gyroscope",
                 RED,
-                f"one value in twenty is above {most:.2g} °/s: nothing held or flown "
-                "rotates that fast",
+                f"one value in twenty is above {most:.2g} °/s: nothing hand-held or "
+                "airborne rotates that fast",
                 {},
                 "Are these the wrong columns, or is the unit wrong?",
             )
@@ -328,8 +328,8 @@ class _Bench:
                     return self.say(
                         f"range of the {kind}",
                         RED,
-                        f"{letter} stays at {end:.6g} for {lasting + 1} samples: anything {where} "
-                        "that was clipped",
+                        f"{letter} stays at {end:.6g} for {lasting + 1} samples: readings "
+                        f"{where} this were clipped",
                         {"samples": lasting + 1},
                         "Choose a larger range: no correction can restore what was clipped.",
                     )
@@ -1033,7 +1033,7 @@ class _Bench:
             if axis.startswith("-"):
                 advice += (
                     "Either the ground's axis points down, or the accelerometer's signs are "
-                    "reversed, as in iPhones. In that case, change them."
+                    "reversed, as in iPhones. In the second case, change the signs."
                 )
             words = f"up is {lean:.1f}° away from the ground's {axis} axis"
             light = YELLOW if advice else GREEN

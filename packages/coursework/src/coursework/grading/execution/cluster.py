@@ -92,8 +92,8 @@ class _PlainData(pickle.Unpickler):
         ):
             return super().find_class(module, name)  # how the bytes of an error say what they are
         raise TypeError(
-            "We refused a pickle, because anyone who sends one could run code here, next to the "
-            "right answers."
+            "We refused a pickle, because whoever sent it could run code on this machine, which "
+            "holds the right answers."
         )
 
 
@@ -164,8 +164,8 @@ def run_on_cluster(
             client.register_plugin(Sandboxes(name, vars(limits), allow_weak_isolation), name=name)
         except OSError as error:
             raise ValueError(
-                f"We lost the scheduler at {address} ({error}). Run the same command again to "
-                "resume."
+                f"We lost the connection to the scheduler at {address} ({error}). Run the same "
+                "command again to resume."
             ) from None
         stack.callback(_leave, client, name)
         sent: dict[str, tuple[Future[bytes], Job]] = {}
@@ -185,8 +185,8 @@ def run_on_cluster(
                     error, (FutureCancelledError, CancelledError, OSError)
                 ):
                     raise ValueError(
-                        f"We lost the scheduler at {address}. The finished results are kept. Run "
-                        "the same command again to resume."
+                        f"We lost the connection to the scheduler at {address}. The finished "
+                        "results are kept. Run the same command again to resume."
                     ) from None
                 # An error comes as a pickle, and stays one. That worker after
                 # worker died is no secret in it.

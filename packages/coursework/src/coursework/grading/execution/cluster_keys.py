@@ -61,12 +61,12 @@ def make_keys(folder: Path) -> bool:
         )
     except FileNotFoundError:
         raise NoKeys(
-            "To make the keys of a cluster, install openssl: sudo apt install openssl."
+            "To create keys for a cluster, install openssl: sudo apt install openssl."
         ) from None
     finally:
         os.umask(before)
     if done.returncode:
-        raise NoKeys(f"openssl made no keys in {folder}: {done.stderr.strip()[-300:]}")
+        raise NoKeys(f"openssl created no keys in {folder}: {done.stderr.strip()[-300:]}")
     return True
 
 

@@ -34,8 +34,8 @@ HOME = Path("/autograder")
 ROSTER = "roster.csv"
 
 SETUP = """#!/usr/bin/env bash
-# Run once by Gradescope, with a network: Python, what the packages need, and the questions worked
-# out.
+# Gradescope runs this once, with a network. It installs Python and the packages, and works out the
+# questions.
 set -eu
 export DEBIAN_FRONTEND=noninteractive
 apt-get update -qq

@@ -56,8 +56,7 @@ UNJUDGED = Mark(
     "undecided",
     "too much work",
     messages=(
-        "Evaluating this answer exceeds the limits of time or memory, so your instructor will "
-        "decide.",
+        "Evaluating this answer exceeds the time or memory limit, so your instructor will decide.",
     ),
 )
 #: A figure in the text of a question, as `coursework.checking.variants.image` writes it.

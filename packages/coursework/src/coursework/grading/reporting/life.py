@@ -31,7 +31,7 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         near = difflib.get_close_matches(assignment if own else student, known, 1)
         raise ValueError(
             f"{student!r} has no marks for {assignment!r} in {store.folder}. There are "
-            f"marks {'for' if own else 'of'} {', '.join(known[:40]) or 'nobody yet'}"
+            f"marks for {', '.join(known[:40]) or 'nobody yet'}"
             f"{', but its record is gone: grade again' if given else ''}."
             f"{f' Did you mean {near[0]!r}?' if near and not given else ''}"
             f"{'' if all_given else ' If your marks are elsewhere, add --marks and their folder.'}"

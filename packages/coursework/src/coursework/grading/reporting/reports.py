@@ -40,7 +40,7 @@ DEEDS = {
     "in radians": "answered in radians where degrees are asked for",
     "sign of a symbol": "gave {symbol} the wrong sign",
     "symbols interchanged": "interchanged {first} and {second}",
-    "opposite": "gave the opposite",
+    "opposite": "gave the negative",
     "reciprocal": "gave the reciprocal",
     "factor": "gave {factor} times the answer",
     "one wrong": "got one of the {number} wrong",

@@ -75,7 +75,7 @@ function watchFetching(all) {
     } catch {
       throw fail("there was no answer");
     }
-    if (!answer.ok) throw fail(`the server says ${answer.status}`);
+    if (!answer.ok) throw fail(`the server answered ${answer.status}`);
     const reader = answer.body.getReader();
     const body = new ReadableStream({
       async pull(out) {
