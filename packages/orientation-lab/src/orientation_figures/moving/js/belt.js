@@ -69,6 +69,6 @@ function sentence(theta, passed, turns) {
     return `${by} The plate is as it was at first, but the belt is twisted, and $q$ has become −1. ${passed > 0.995
       ? 'Passed round the plate, the belt is twisted the other way: the twist has not disappeared.' : 'Now hold the plate and pass the belt round it.'}`;
   }
-  return passed > 0.995 ? `${by} Passed round the plate, which has not turned, the belt is flat: two full turns can be undone, but one cannot.`
+  return passed > 0.995 ? `${by} Passed round the plate while it was held, the belt is flat: two full turns can be undone, but one cannot.`
     : `${by} The belt has twice the twist, and $q$ is 1 again. Hold the plate and pass the belt round it.`;
 }

@@ -110,7 +110,7 @@ function sentence(task, given, made, angle) {
       : `Solved in ${count}: ${told(made)}.`;
   }
   if (task === 'match') return `Turn the box about its own arrows until its matrix is that of the goal. ${made.length ? `Now: ${told(made)}.` : 'Read the rows of the goal first: where does each arrow have to point?'}`;
-  if (task === 'undo') return `The box was turned from $N$ through ${told(given)}. Bring it home. ${made.length ? `${count} so far: ${told(made)}.` : ''}`;
+  if (task === 'undo') return `The box was turned from $N$ through ${told(given)}. Turn it back. ${made.length ? `${count} so far: ${told(made)}.` : ''}`;
   const angles = given.map(([, one]) => inDegrees(one)).join(', then ');
   return `The ghost turned through ${angles}, each time about one of its own arrows. Press Play, watch, and make the same turns. ${
     made.length === given.length ? 'Not yet: undo a turn, and look again.' : ''}`;

@@ -85,5 +85,5 @@ function sentence(image, angles) {
     return `Two arrows fit, and ${M[k]} points the wrong way, ${plain(angles[k], 0)}° from ${N[k]}. It is the same whichever two you choose.`;
   }
   return image === 'mirror' ? 'Turn the mirror image until its arrows lie along those of $N$. How many of them can fit at once?'
-    : 'The copy has been turned, not mirrored. Can you bring all three arrows home?';
+    : 'The copy has been turned, not mirrored. Can you turn all three arrows back onto $N$?';
 }

@@ -262,7 +262,7 @@ export function render({ model, el }) {
       moment.mark(refused ? 'refused' : '');
     });
     AXES.forEach((about, k) => write(ranks[k], `${about} (${rank(settings.moments, k)})`));
-    writeWords(aside, `Dashed: the reference, computed with steps ten times finer. Every description uses its angular velocity. The arrow $\\mathbf{H}$ is the angular momentum of the ${body}, which keeps its direction.`);
+    writeWords(aside, `Dashed: the reference, computed with steps ten times finer. Every description uses its angular velocity. The arrow $\\mathbf{H}$, the angular momentum of the ${body}, keeps its direction.`);
     axis.show(settings.axis);
     method.show(settings.method);
     step.show(settings.step);
