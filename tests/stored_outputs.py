@@ -9,7 +9,7 @@ format_difference = nbval.plugin.IPyNbCell.format_output_compare
 
 
 def compare_outputs(cell, test, ref, skip_compare=None):
-    """Compare outputs as nbval does, except for numbers that moved by a small amount.
+    """Compare outputs as nbval does, except for numbers that changed by a small amount.
 
     `notebook_pages.moves` gives the limit.
     """

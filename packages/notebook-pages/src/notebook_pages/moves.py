@@ -1,4 +1,4 @@
-"""Compare two texts up to the last digits of their numbers, and measure how much these moved.
+"""Compare two texts up to the last digits of their numbers, and measure how much these changed.
 
 Different processors round differently: the order of a sum differs, and some round a product before
 adding it. The output of a cell may move by that much, and by no more.
@@ -24,7 +24,7 @@ TOKEN = re.compile(rf"[A-Za-z]+|{NUMBER}")
 
 
 class Move(NamedTuple):
-    """A number that moved; ``by`` is infinite for a difference that is not a number."""
+    """A number that changed; ``by`` is infinite for a difference that is not a number."""
 
     stored: str
     now: str

@@ -248,7 +248,7 @@ ARGUMENTS = {
                 "--keys",
                 required=True,
                 metavar="FOLDER",
-                help="folder for the keys (created if it is empty)",
+                help="folder for the keys (new keys are created if it is empty)",
             ),
             argument(
                 "--host",
