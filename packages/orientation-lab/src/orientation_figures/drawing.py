@@ -213,8 +213,8 @@ class Drawing(Words):
                 else shape[1] / 1000 * typeset(shape[0])[1]
             )
             corners += [
-                np.min(np.reshape(place, (-1, 2)), axis=0) + ink[0],
-                np.max(np.reshape(place, (-1, 2)), axis=0) + ink[1],
+                np.min(np.asarray(place).reshape(-1, 2), axis=0) + ink[0],
+                np.max(np.asarray(place).reshape(-1, 2), axis=0) + ink[1],
             ]
         return np.concatenate([np.min(corners, axis=0), np.max(corners, axis=0)])
 

@@ -129,7 +129,7 @@ def test_a_planted_secret_is_found(trial, tmp_path):
     [
         (
             [("code", SETUP), ("code", SOLUTION), ("code", "check('trial/about-x', A_C_N)")],
-            "without a question",
+            "these checks have no question",
         ),
         ([("code", SETUP), ("code", f"A_C_N = 1\n{HIDDEN}")], "below its check"),
         (
