@@ -213,7 +213,7 @@ def test_a_lost_scheduler_is_said_and_nothing_is_lost(
         killer = threading.Thread(target=lose_the_scheduler)
         killer.start()
         try:
-            with pytest.raises(ValueError, match="lost the scheduler at"):
+            with pytest.raises(ValueError, match="lost the connection to the scheduler at"):
                 grade_quietly(submissions, out, solutions, address)
         finally:
             over.set()
