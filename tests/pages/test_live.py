@@ -948,28 +948,6 @@ def test_stop_keeps_the_names_in_an_isolated_page(shared, code):
     assert "kept" in shared.try_code(3, "kept")
 
 
-# Python's two steps of a check for an interrupt, with Stop pressed between them.
-LOOKS = """
-import time
-from js import Reflect
-from pyodide_js import _module as module
-looked_at, listens = module.Py_EmscriptenSignalBuffer, module._Py_EMSCRIPTEN_SIGNAL_HANDLING
-Reflect.set(module.HEAP8, listens, 0)
-assert Reflect.get(looked_at, 0) == 0
-print('begun')
-time.sleep(1)
-Reflect.set(looked_at, 0, 0)
-Reflect.set(module.HEAP8, listens, 1)
-while True:
-    pass"""
-
-
-def test_stop_that_comes_while_python_looks_for_it_is_heard(shared):
-    shared.try_code(3, "kept = 'kept'")
-    assert "still there" in stop(shared, 3, LOOKS)
-    assert "kept" in shared.try_code(3, "kept")
-
-
 @pytest.mark.long
 def test_stop_in_a_page_without_shared_memory(browser, not_isolated):
     context = browser.new_context(service_workers="block")  # or one would isolate the pages

@@ -4,7 +4,8 @@
 const SILENCE = 18_000;
 // A run that cannot be interrupted in this time is ended, and everything that it knew with it.
 const PATIENCE = 2500;
-// Python that has heard, but goes on (what an object's deletion raises is ignored), is asked again after this time.
+// Python that took the number away is asked again after this time: an interrupt that comes between the two steps of its
+// check is lost, and so is one that comes while an object is deleted.
 const LONGER = 5000;
 
 export class Python {
@@ -73,7 +74,7 @@ export class Python {
     this.interrupts[0] = 2; // SIGINT
     clearTimeout(this.timer);
     const giveUp = () => this.end("interrupted");
-    // Python takes the number away when it hears.
+    // Python takes the number away when it reads it.
     this.timer = setTimeout(() => {
       if (this.interrupts[0]) giveUp();
       else this.timer = setTimeout(() => (again ? this.interrupt(false) : giveUp()), LONGER);

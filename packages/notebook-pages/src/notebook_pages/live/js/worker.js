@@ -134,20 +134,6 @@ function watchModules() {
   }
 }
 
-// What Python looks at to learn of an interrupt. It reads the number and then writes a zero: one that the page had put
-// there in between would be lost. So that zero takes away what was read, and nothing else.
-function heard(shared) {
-  let read = 0;
-  return {
-    get 0() {
-      return (read = Atomics.load(shared, 0));
-    },
-    set 0(number) {
-      Atomics.compareExchange(shared, 0, read, number);
-    },
-  };
-}
-
 async function start({ runtime, pyodide, lock: listed, interrupts }) {
   let lock;
   watchModules();
@@ -172,7 +158,7 @@ async function start({ runtime, pyodide, lock: listed, interrupts }) {
   const site = python.runPython("import sysconfig; sysconfig.get_path('purelib')");
   for (const folder of ["core", "lib"]) python.FS.mkdirTree(`${site}/IPython/${folder}`);
   for (const [name, text] of Object.entries(FILES)) python.FS.writeFile(`${site}/${name}`, text);
-  if (interrupts) python.setInterruptBuffer(heard(new Uint8Array(interrupts)));
+  if (interrupts) python.setInterruptBuffer(new Uint8Array(interrupts));
   shell = python.pyimport("session").start((text) => {
     const message = JSON.parse(text);
     if (message.type.startsWith("comm_")) postMessage({ type: "widget", message });
