@@ -1,4 +1,4 @@
-"""Exercises that check themselves and hold no answers, and the tools that make and grade them.
+"""Self-checking exercises that contain no answers, and the tools that make and grade them.
 
 A student needs ``from coursework import check`` and no more.
 """

@@ -43,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(
         prog="coursework",
         usage=None if rooms else _STUDENTS_USAGE,  # which every error about a command shows
-        description="Make, grade and update exercises that check themselves.",
+        description="Make, grade and update self-checking exercises.",
         epilog="Run coursework COMMAND --help for the options of a command.",
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")

@@ -44,7 +44,7 @@ def changed(old, new, text=QUESTION):
     [
         (
             {"answer": "answer = 3 * x"},
-            "no solution in trial.ipynb sets `answer`, so students would get the answer",
+            "no solution in trial.ipynb sets `answer`, so students would see the answer",
         ),
         (
             {"answer": ANSWER.removesuffix("### END SOLUTION")},
@@ -69,11 +69,11 @@ def changed(old, new, text=QUESTION):
         ),
         (
             {"question": "question('trial/one', kind='expression', symbols='x')"},
-            "or students would get it",
+            "or students would see it",
         ),
         (
             {"check": "check('trial/other', answer)"},
-            "put the question below its check; checked so far: trial/other",
+            "call `question` below its check; checked so far: trial/other",
         ),
         ({"question": changed("kind='expression', ", "")}, "trial/one: give its kind"),
         (

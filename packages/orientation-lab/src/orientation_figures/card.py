@@ -44,8 +44,8 @@ FRONT = (
 BACK = (
     "Numbers called “inverse” describe the inverse orientation. In sequences other than z-x-y, the "
     "angles phi, theta, psi are",
-    "about x, y, z. Where two programs name their axes differently, exchange them on both sides of "
-    "the matrix.",
+    "about x, y, z. If two programs name their axes differently, reorder both the rows and the "
+    "columns of the matrix, with their signs.",
 )
 QUESTIONS = (
     (

@@ -310,7 +310,7 @@ def typeset(text):
             glyphs.append((_outline(vertices, codes), corner, size))
             ink.append(corner + size * vertices[codes != 79])
     if not ink:
-        raise ValueError(f"the text {text!r} has nothing to draw")
+        raise ValueError(f"the text {text!r} contains no visible characters")
     ink = np.concatenate(ink)
     corners = np.array([ink.min(axis=0), ink.max(axis=0)])
     middle = np.array((corners[:, 0].mean(), -220))

@@ -147,8 +147,8 @@ def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
         "A tilted phone above the ground. "
         "In its frame P, p x points to the right across the screen, p y towards its top edge, and "
         "p z out of the screen. "
-        "The accelerometer measures an arrow that points straight up from the middle of the phone. "
-        f"Another arrow, the magnetic field, points north, {in_degrees(dip)} below "
+        "An arrow straight up from the middle of the phone shows what the accelerometer measures. "
+        f"Another, the magnetic field, points north, {in_degrees(dip)} below "
         "the horizontal. "
         "Up crossed with the field is horizontal and points west. "
         "Beside the phone is the frame E: x north, y west, z up.",

@@ -208,7 +208,7 @@ def test_a_figure_without_words_is_refused(alt):
 def test_a_view_of_the_wrong_shape_and_an_empty_text_are_refused():
     with pytest.raises(ValueError, match=r"view has shape \(2,\)"):
         Drawing(ALT, view=(1, 2))
-    with pytest.raises(ValueError, match="nothing to draw"):
+    with pytest.raises(ValueError, match="no visible characters"):
         Drawing(ALT).label((0, 0, 0), "  ")._repr_html_()
 
 

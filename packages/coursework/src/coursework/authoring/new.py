@@ -104,7 +104,7 @@ jobs:
 """,
     "README.md": """# {title}
 
-Exercises in notebooks that check themselves and hold no answers.
+Self-checking exercises in notebooks that contain no answers.
 
 | folder | what | who sees it |
 |---|---|---|

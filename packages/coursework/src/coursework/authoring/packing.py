@@ -25,7 +25,7 @@ DISTRIBUTIONS = {
     "coursework-checks": (
         ("*.py", "py.typed", "checking/*.py"),
         ("sympy<2,>=1.14",),
-        "Exercises in notebooks that check themselves and hold no answers: what a student needs",
+        "Self-checking exercises in notebooks that contain no answers: what a student needs",
     ),
     "coursework-tools": (
         ("authoring/**/*", "grading/**/*"),
@@ -47,7 +47,7 @@ DISTRIBUTIONS = {
             "pyyaml",  # Gradescope's table of submissions
             "tornado",  # the page to judge in
         ),
-        "Exercises in notebooks that check themselves and hold no answers: what authors and "
+        "Self-checking exercises in notebooks that contain no answers: what authors and "
         "instructors need",
     ),
 }

@@ -231,7 +231,7 @@ def read_source(
     def record_question(name: str, **about: Any) -> None:
         if name not in answers:
             raise author.AuthorError(
-                f"{name}: put the question below its check"
+                f"{name}: call `question` below its check"
                 + (f"; checked so far: {', '.join(answers)}." if answers else ".")
             )
         if name in questions:
@@ -379,16 +379,16 @@ def _demand_hidden(file: str, notebook: NotebookNode, variables: Mapping[str, st
     for variable, name in owners.items():
         if variable not in solved_here:
             raise author.AuthorError(
-                f"{name}: no solution in {file} sets `{variable}`, so students would get the "
-                "answer, or no blank. "
+                f"{name}: no solution in {file} sets `{variable}`, so students would see the "
+                "answer, or would have no blank to fill in. "
                 f"Write `{variable} = ...` between `### BEGIN SOLUTION` and `### END SOLUTION`."
             )
     for number, text in cells:
         for node in ast.walk(ast.parse(posed(text, owners))):
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "question":
                 raise author.AuthorError(
-                    f"{file}, cell {number}: put the question between `### BEGIN HIDDEN TESTS` "
-                    "and `### END HIDDEN TESTS`, or students would get it."
+                    f"{file}, cell {number}: call `question` between `### BEGIN HIDDEN TESTS` "
+                    "and `### END HIDDEN TESTS`, or students would see it."
                 )
 
 

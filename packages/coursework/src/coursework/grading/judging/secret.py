@@ -57,8 +57,8 @@ def secret_beside(folder: str | Path) -> bytes:
         return bytes.fromhex(path.read_text("ascii").strip())
     except (OSError, ValueError) as error:
         raise ValueError(
-            f"We cannot save the secret of this course in {path} ({error}). Keep it with the "
-            "solutions, because some of the test points for marks are derived from it."
+            f"We cannot read or create {path} ({error}). This file holds the secret of the course, "
+            "from which grading derives some of its test inputs. It belongs beside the solutions."
         ) from None
 
 

@@ -1735,7 +1735,9 @@ class Generator:
 
     def drawn(self, draw, size):
         if self.successor is not None:
-            raise NotImplementedError("the real generator has gone on")
+            raise NotImplementedError(
+                "NumPy's own generator has continued from this one, which can no longer be used"
+            )
         if size is None:
             return draw()
         shape = shape_of((size,))
