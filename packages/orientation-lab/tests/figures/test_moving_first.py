@@ -125,7 +125,7 @@ TREE = [
 )
 def test_a_tree_has_each_frame_once_and_its_reference_before(edges):
     with pytest.raises(
-        TraitError, match="edges (turns B in A, but there is no frame A|defines the frame)"
+        TraitError, match="edges (orients B in A, but there is no frame A|defines the frame)"
     ):
         GraphFigure(edges=edges, target="N", source="N")
 
