@@ -72,7 +72,7 @@ ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 NOTES = {
     "works only out of order": "It works only if its cells run in a different order. "
     "The answers count, but next time choose *Restart the kernel "
-    "and run all cells* before you hand in.",
+    "and run all cells* before you hand in the notebook.",
     "wrote into the records": "Its code wrote where answers are recorded. "
     "We treated what it wrote only as an answer.",
     "could not be run": "We could not run it. Your instructor will look at it.",
