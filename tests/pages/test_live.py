@@ -754,7 +754,7 @@ def test_page_shows_a_students_own_numbers_and_fetches_one_small_file(context, s
     # Before anything is run, the reader's own numbers are shown, and not the default ones.
     cell = f"document.querySelectorAll('div.cell')[{shown - 1}]"
     again.page.wait_for_function(
-        f"{cell}.querySelector('.text_markdown') && !{cell}.querySelector('.live-known')"
+        f"{cell}.querySelector('.text_markdown')?.innerText && !{cell}.querySelector('.live-known')"
     )
     # Lines break in other places until the style sheet of the formulas has come.
     assert again.below(shown).split() == mine.split()
