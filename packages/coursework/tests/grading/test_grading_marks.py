@@ -177,7 +177,7 @@ def test_the_secret_is_made_once_and_decides_the_points(tmp_path, solutions):
     assert (tmp_path / secret.FILE).stat().st_mode & 0o077 == 0
     (tmp_path / "other").mkdir()
     assert secret.secret_beside(tmp_path / "other") != first
-    with pytest.raises(ValueError, match="Keep it with the solutions"):
+    with pytest.raises(ValueError, match="It belongs beside the solutions"):
         secret.secret_beside(tmp_path / "nowhere")
     one, same, other = (
         questions_of(solutions / "turns.ipynb", known) for known in (b"one", b"one", b"other")
