@@ -136,14 +136,27 @@ def keep_punctuation(app, doctree, docname):
 
 
 def typeset_docstring(app, what, name, documented, options, lines):
-    """Make formulas of the TeX between dollars, which a docstring has since a terminal shows it."""
+    r"""Make formulas of the TeX between dollars, which a docstring has since a terminal shows it.
+
+    As in a chapter, no space may stand just inside the dollars, and code is left as it is.
+
+    >>> lines = ["Turn $A$ by", "", "$$", r"\theta", "$$", "", "``$x$``, $HOME and $PATH."]
+    >>> typeset_docstring(None, "", "", None, None, lines)
+    >>> lines
+    ['Turn :math:`A` by', '', '.. math::', '', '   \\theta', '', '', '``$x$``, $HOME and $PATH.']
+    """
     text = re.sub(
         r"^( *)\$\$\n(.*?)^ *\$\$$",
         lambda found: f"{found[1]}.. math::\n\n" + indent(found[2], "   "),
         "\n".join(lines),
         flags=re.MULTILINE | re.DOTALL,
     )
-    lines[:] = re.sub(r"\$([^$]+)\$", r":math:`\1`", text).split("\n")
+    lines[:] = re.sub(
+        r"``.+?``|\$(?!\s)([^$]+)(?<!\s)\$(?!\d)",
+        lambda found: f":math:`{found[1]}`" if found[1] else found[0],
+        text,
+        flags=re.DOTALL,
+    ).split("\n")
 
 
 def link_equations(app, doctree, docname):

@@ -390,7 +390,7 @@ def hint(error, name):
         return ""
     line = (error.text or "").strip()
     if line.startswith(("%", "!")):
-        return "\n\n" + COMMANDS.get(line.lstrip("%!").partition(" ")[0], ONLY_PYTHON)
+        return "\n\n" + COMMANDS.get(line.lstrip("%! ").partition(" ")[0], ONLY_PYTHON)
     if line.endswith("?") or line.startswith("?"):
         return f"\n\nThe question mark works only in Jupyter. Here, write help({line.strip('?')})"
     return ""
