@@ -1,1 +1,1 @@
-"""Handed in: what was handed in, and by whom."""
+"""Submissions: what students handed in, and who they are."""

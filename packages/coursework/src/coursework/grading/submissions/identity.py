@@ -1,9 +1,8 @@
-"""Who handed a file in: what the systems' archives say, and the roster,
-which alone decides where there is one.
+"""Matching of submitted files to students, by the archives of learning systems and the roster.
 
-The name of a file or folder is a claim. What a system wrote stands at its beginning; what follows
-was chosen by the student and claims nothing, whatever it looks like. Where two submissions claim to
-be one student's, nobody knows whose they are: none of them is graded, and a person is asked.
+The name of a file or folder is only a claim. A learning system writes the beginning of the name;
+the student chose the rest, which proves nothing. A roster, where there is one, decides alone. If
+two submissions claim to be one student's, we grade neither and ask a person.
 """
 
 import datetime
@@ -16,19 +15,19 @@ from typing import NamedTuple
 
 from .roster import Roster
 
-# What a system writes of a person's name holds none of its own marks: the first one is its own.
-# Moodle leaves no underscore in a name, and Canvas none with a number between two of them.
+# In the part that a system writes, its own separators occur only where it puts them: Moodle leaves
+# no underscore in a name, and Canvas no number between two underscores.
 CANVAS = re.compile(r"(?P<name>.+?)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission>\d+)_(?P<file>.+)")
 CANVAS_ANONYMOUS = re.compile(
     r"(?P<late>LATE_)?anon_(?P<user>[A-Za-z0-9]{5})_(?P<submission>\d+)_(?P<file>.+)"
 )
-#: A name that ends in a number may be told from a file whose name begins with
-#: one only by who is in the course.
+#: The alternative reading of Canvas's names. Only the roster can tell a person's name that ends in
+#: a number from a file's name that begins with one.
 CANVAS_NUMBERED = re.compile(
     r"(?P<name>.+?_\d+)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission>\d+)_(?P<file>.+)"
 )
 GRADESCOPE = re.compile(r"submission_\d+")
-#: What Gradescope puts beside the submissions: whose each is.
+#: Gradescope's table of who handed in which submission.
 GRADESCOPE_TABLE = "submission_metadata.yml"
 MOODLE = re.compile(
     r"(?P<name>[^_]+)_(?P<user>\d+)_assignsubmission_(?:file|onlinetext)(?:_(?P<file>.*))?"
@@ -40,41 +39,40 @@ BRIGHTSPACE = re.compile(
 BLACKBOARD = re.compile(r"(?P<who>.+?)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)")
 RESUBMITTED = re.compile(r"(?P<stem>.+?)-(?P<number>\d{1,3})")
 MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
-#: The folders of a course of nbgrader: only what was submitted was handed in.
+#: The folders of an nbgrader course. Only ``submitted`` holds students' work.
 NBGRADER = {"submitted", "source", "release", "autograded", "feedback"}
 
 
-#: A path, part by part.
+#: The parts of a path.
 Parts = tuple[str, ...]
 
 
 class Claim(NamedTuple):
-    """What the place of a file says of who handed it in.
+    """What a file's path claims about who handed it in.
 
     Attributes
     ----------
     student : str
-        For a person to read; the student's name here where there is no roster.
+        The student's name, for a person to read. Without a roster it is also their name here.
     keys : tuple of (kind, value)
-        What a roster may know the student by, the surest first.
+        What to look the student up by in a roster, the most reliable first.
     source : str
-        The same for all that one student handed in, and for nobody else's.
+        The same for everything that one student handed in, and different for every other student.
     file : str
         The path of the file as its author named it.
     declared : tuple
-        The greater, the newer.
+        The version that the name declares, as numbers; the greatest is the newest.
     late : bool
     given_by_system : bool
-        Whether a learning management system wrote it.
+        Whether a learning management system wrote the name.
     handed_in : str
-        When, by the system's own clock; empty where it does not say.
+        The time by the system's own clock; empty where the system does not give it.
     reply : str
-        How the name of a file begins that the system gives back to this student: what it wrote
-        itself.
+        The beginning, as the system wrote it, of the name of the file we give back to this student.
     place : str
-        The name of the outermost folder or file, as it stands in what was handed in.
+        The name of the outermost folder or file, as it was handed in.
     others : tuple of tuples of (kind, value)
-        Of what a group handed in, the same as ``keys`` for each of the other members.
+        For a group's submission, the ``keys`` of each of the other members.
     """
 
     student: str
@@ -91,10 +89,10 @@ class Claim(NamedTuple):
 
 
 class Layout:
-    """Tells from the names of all files how the submissions are laid out,
-    and what each file's place claims.
+    """The layout of the submissions, deduced from the names of all files.
 
-    One layout holds for all: a student cannot choose another by a name inside the own folder.
+    All files have the same layout, so that no student can choose another by naming a file or
+    folder.
 
     Parameters
     ----------
@@ -103,9 +101,9 @@ class Layout:
     assignments, repositories : iterable of str
     roster : Roster, optional
     read : function, optional
-        Gives the bytes of a file of these names, for a system that says in a table whose is what.
+        Returns the bytes of a file in `names`, for systems that list the owners in a table.
     student : str, optional
-        The one student who handed all of it in.
+        The one student who handed in everything.
     """
 
     def __init__(
@@ -142,19 +140,20 @@ class Layout:
         elif self.kind == "gradescope":
             self.kind = "own"
         if self.kind == "blackboard":
-            # The assignment's name comes first, and is the same for all.
+            # The assignment's name comes first and is the same in all names.
             self.prefix = _shared(
                 {found["who"] for top in tops if (found := BLACKBOARD.fullmatch(top))}, "_"
             )
         elif self.kind == "own" and 2 * len(set(tops) & self._inside(repositories)) > len(
             set(tops)
         ):
-            # Of most: a repository inside the own folder changes nobody's name.
+            # Most folders must be repositories, so that one inside a student's folder changes no
+            # names.
             self.prefix = _shared(set(tops), "-")
             self.kind = "github"
 
     def _strip(self, notebooks: list[Parts]) -> None:
-        """Leave folders out that enclose everything, and nbgrader's."""
+        """Skip a folder that encloses everything, and nbgrader's folders."""
         first = {parts[0] for parts in notebooks if len(parts) > 1}
         if (
             len(first) == 1
@@ -165,7 +164,8 @@ class Layout:
             inner = [parts[1:] for parts in notebooks]
             inside = {parts[0] for parts in inner}
             known = self.roster is not None and self.roster.find(_own(enclosing))[0] is not None
-            # What a system wrote of somebody is nothing that encloses others, whatever lies inside.
+            # A folder whose name a system wrote for one person does not enclose other people's
+            # work, whatever it contains.
             known = known or any(fits((enclosing, "")) for _, fits in SYSTEMS)
             if not known and (
                 inside <= NBGRADER
@@ -180,11 +180,11 @@ class Layout:
                 notebooks, first = inner, inside
         if "submitted" in first and first <= NBGRADER:
             self.enclosing += ("submitted",)
-        #: Whether nbgrader collected it, which says in a file when each was handed in.
+        #: Whether nbgrader collected the submissions. It keeps the time of each in a file.
         self.is_nbgraders = self.enclosing[-1:] == ("submitted",)
 
     def _inside(self, folders: Iterable[str]) -> set[str]:
-        """The names of those folders that lie where the students' own do."""
+        """Return the names of those folders that lie beside the students' own."""
         all_parts = [PurePosixPath(folder).parts for folder in folders]
         return {parts[-1] for parts in all_parts if parts and parts[:-1] == self.enclosing}
 
@@ -192,7 +192,7 @@ class Layout:
         return len(parts) > len(self.enclosing) and parts[: len(self.enclosing)] == self.enclosing
 
     def claim(self, name: str) -> Claim | None:
-        """The claim of a file; ``None`` for one that is beside what was handed in."""
+        """Return the claim of a file, or ``None`` for a file outside the submissions."""
         parts = PurePosixPath(name).parts
         if not self._is_inside(parts):
             return None
@@ -203,7 +203,7 @@ class Layout:
         return found and found._replace(place=parts[0])
 
     def is_beside_submissions(self, name: str) -> bool:
-        """Whether a file is in one of the folders that nbgrader has beside what was submitted."""
+        """Check whether a file is in one of nbgrader's folders beside ``submitted``."""
         parts = PurePosixPath(name).parts
         return (
             self.is_nbgraders
@@ -212,7 +212,7 @@ class Layout:
             and parts[len(self.enclosing) - 1] in NBGRADER
         )
 
-    # -- the systems: a part of the name that does not fit claims nothing
+    # -- one method for each system: a name that does not fit claims nothing
 
     def _canvas(self, parts: Parts) -> Claim | None:
         kind, found = self._read_as_canvas(parts[0])
@@ -234,9 +234,7 @@ class Layout:
         )
 
     def _read_as_canvas(self, name: str) -> tuple[str, re.Match[str] | None]:
-        """What Canvas wrote of a name; ``None`` where it may be read in two ways and
-        the roster does not tell which.
-        """
+        """Read a name that Canvas wrote; ``None`` if it is ambiguous even by the roster."""
         anonymous = CANVAS_ANONYMOUS.fullmatch(name)
         if anonymous:
             return "canvas anonymous", anonymous
@@ -262,7 +260,7 @@ class Layout:
         if known is None:
             return None
         people, when = known
-        # The number or address is the course's; what people are called they may change.
+        # The ID or address comes from the course, but people can change their names.
         keys, *others = (
             (*(("gradescope", own) for own in numbers), ("name", name)) for name, numbers in people
         )
@@ -327,10 +325,10 @@ class Layout:
         )
 
     def _blackboard_user(self, who: str) -> str:
-        """The user's name, which stands behind the assignment's; both
-        may hold the sign that joins them.
+        """Return the user name, which follows the assignment's name; both may contain underscores.
 
-        Where several of the roster could be meant it is no name, so that a person is asked.
+        If several people of the roster fit, return what matches none of them, so that a person is
+        asked.
         """
         if self.roster:
             words = who.split("_")
@@ -338,11 +336,12 @@ class Layout:
             known = [end for end in ends if self.roster.find((("own", end),))[0] is not None]
             if known:
                 return known[0] if len(known) == 1 else who
-        return who.removeprefix(self.prefix)  # of one alone nobody knows where the name begins
+        # For a single submission we cannot know where the name begins.
+        return who.removeprefix(self.prefix)
 
     def _github(self, parts: Parts) -> Claim | None:
         user = parts[0].removeprefix(self.prefix)
-        # Anyone may choose that name, so match it only with the column `github` of the roster.
+        # Anybody can choose a GitHub name, so match it only with the column `github` of the roster.
         keys = (("github", user),)
         return Claim(
             _clean(user), keys, f"repository {parts[0]}", _inside(parts), reply=f"{parts[0]}/"
@@ -361,16 +360,14 @@ class Layout:
         for assignment in self.assignments:
             rest = stem.replace(assignment, "").strip(" _-.()")
             if assignment in stem and rest:
-                # A second way of writing the same name is a second claim.
+                # The same name written differently is a separate claim.
                 source = f"files {stem.replace(assignment, '*')}"
                 return Claim(_clean(rest), _own(rest), source, parts[0], reply=f"{stem}-")
         return Claim(_clean(stem), _own(stem), f"file {stem}", parts[0], reply=f"{stem}-")
 
 
 def _as_time(numbers: tuple[int, ...]) -> str:
-    """Year, month, day and so on as ISO 8601 has them, without a time
-    zone; empty where they are no time.
-    """
+    """Return a date and time in ISO 8601 without a time zone; empty if they are invalid."""
     year, month, day, *clock = numbers
     hour, minute, second, *_ = (*clock, 0, 0, 0)
     try:
@@ -380,12 +377,12 @@ def _as_time(numbers: tuple[int, ...]) -> str:
 
 
 def _before_the_file(found: re.Match[str]) -> str:
-    """What a system wrote of a file's name, before what the student called it."""
+    """Return the part of a name that the system wrote, before the student's name of the file."""
     return found.string[: found.start("file")]
 
 
 def _inside(parts: Parts, first: str | None = None) -> str:
-    """The path below what the system wrote; `first` is what a student named of the first part."""
+    """Return the path below the system's part; `first` is the student's part of the first name."""
     return "/".join(([first] if first else []) + list(parts[1:]))
 
 
@@ -397,7 +394,7 @@ def _fits(pattern: re.Pattern[str], in_file: bool = True) -> Callable[[Parts], b
 
 
 SYSTEMS: tuple[tuple[str, Callable[[Parts], bool]], ...] = (
-    # Of Canvas only files: a folder with two numbers in its name may be a student's own.
+    # Canvas hands out only files. A folder with two numbers in its name may be a student's own.
     (
         "canvas",
         lambda parts: (
@@ -413,9 +410,7 @@ SYSTEMS: tuple[tuple[str, Callable[[Parts], bool]], ...] = (
 
 
 def _submitters(data: bytes) -> dict[str, tuple[list[tuple[str, list[str]]], str]]:
-    """Of each of Gradescope's submissions, the people who handed it in, with their names and their
-    numbers and addresses, and the time.
-    """
+    """Return the people (names, IDs, addresses) and the time of each Gradescope submission."""
     import yaml
 
     try:
@@ -442,7 +437,7 @@ def _own(name: str) -> tuple[tuple[str, str], ...]:
 
 
 def _shared(names: set[str], end: str) -> str:
-    """The beginning that all names share, up to a sign; empty where there is one name only."""
+    """Return the beginning that all names share, up to `end`; empty if there is only one name."""
     if len(names) < 2:
         return ""
     shared = os.path.commonprefix(sorted(names))
@@ -450,12 +445,12 @@ def _shared(names: set[str], end: str) -> str:
 
 
 def _clean(name: str) -> str:
-    """A name in one spelling, of a length that is one."""
+    """Return a name in one spelling and of a sensible length."""
     return " ".join(unicodedata.normalize("NFC", name).split())[:120] or "without a name"
 
 
-#: Cyrillic and Greek letters, small ones for both sizes, and the Latin ones that they are taken
-#: for: of the table of confusables of Unicode Technical Standard 39, what a keyboard writes.
+#: Lower-case Cyrillic and Greek letters that look like Latin ones and that a keyboard can type,
+#: from the table of confusables in Unicode Technical Standard 39.
 LOOK_ALIKES = str.maketrans(
     dict(
         zip(
@@ -476,8 +471,8 @@ LOOK_ALIKES = str.maketrans(
 )
 
 
-#: What is not seen and is neither a control nor a format sign: joiners, fillers, variation
-#: selectors, an empty Braille.
+#: Invisible characters that are neither control nor format characters: joiners, fillers, variation
+#: selectors and the empty Braille pattern.
 UNSEEN = frozenset(
     map(
         chr,
@@ -496,10 +491,10 @@ UNSEEN = frozenset(
 
 
 def looks_like(name: str) -> str:
-    """What a person sees of a name, and what some file systems and gradebooks tell apart.
+    """Reduce a name to what it looks like, so that look-alikes compare equal.
 
-    Wide letters as narrow ones, capitals as small letters, letters of another script as those they
-    look like, and nothing of signs that are not seen, nor of what stands at the end and may be
+    Wide letters become narrow, capitals small, and letters of other scripts the Latin ones that
+    they resemble. Invisible characters go, and so do dots and spaces at either end, which may get
     lost.
     """
     plain = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())
@@ -512,8 +507,8 @@ def looks_like(name: str) -> str:
 
 
 def _when(text: str) -> tuple[int, ...]:
-    """Brightspace's ``Nov 21, 2026 801 PM`` as numbers; the words are
-    the same in every language setting.
+    """Return the numbers of Brightspace's ``Nov 21, 2026 801 PM``, English in every language
+    setting.
     """
     month, day, year, clock, half = text.replace(",", "").split()
     number = MONTHS.index(month[:3].lower()) + 1 if month[:3].lower() in MONTHS else 0

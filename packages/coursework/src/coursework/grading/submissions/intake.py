@@ -1,13 +1,11 @@
-"""What was handed in: notebooks found in a folder or an archive,
-read strictly, and never written to.
+"""Strict, read-only collection of submitted notebooks from a folder or an archive.
 
-Understood are a folder of notebooks, a folder for each student, nbgrader's
+We read a folder of notebooks, a folder for each student, nbgrader's
 ``submitted/student/assignment``, repositories of GitHub Classroom, and the archives (packed or
-unpacked) that Canvas, Moodle, Brightspace and Blackboard hand out; in each of them also an archive
-that a student packed. Everything here was named and written by strangers. What is not an honest
-notebook is refused by its name, with a reason, and the rest goes on: no link is followed, nothing
-is unpacked on disk, nothing is repaired. `coursework.grading.submissions.identity` says whose
-it is.
+unpacked) of Canvas, Moodle, Brightspace, Blackboard and Gradescope. Each may contain archives that
+students packed. Strangers named and wrote everything here, so we refuse whatever is not an honest
+notebook, by name and with a reason, and go on with the rest. We follow no link, unpack nothing on
+disk and repair nothing. `coursework.grading.submissions.identity` determines whose each file is.
 """
 
 import base64
@@ -36,26 +34,32 @@ from .identity import GRADESCOPE_TABLE, RESUBMITTED, Claim, Layout, looks_like
 from .pictures import JPEG, PNG, is_picture
 from .roster import Roster
 
-#: Gives the bytes of a file.
+#: A function that returns the bytes of a file.
 Read = Callable[[], bytes]
-#: The time of a file: the greater, the newer.
+#: The time of a file. The greatest is the newest.
 When = int | tuple[int, ...]
-#: A file that was found: its name, its time, and what reads it.
+#: A file's name, its time, and a function that reads it.
 Found = tuple[str, When, Read]
-#: The files that are no notebooks, each with its name, by the source that they claim to be of.
+#: The files that are not notebooks, each with its claim and its name, by the source of the claim.
 Others = dict[str | None, list[tuple[Claim | None, str, Read]]]
 
-MOST_BYTES = 20 << 20  # of one notebook
+# The most bytes of one notebook.
+MOST_BYTES = 20 << 20
 MOST_CELLS = 1_000
-MOST_CODE = 1 << 20  # characters in the code cells of one notebook
+# The most characters in the code cells of one notebook.
+MOST_CODE = 1 << 20
 MOST_FILES = 200_000
-MOST_VALUES = 1_000_000  # of the JSON of one notebook: each takes up to a hundred bytes of memory
-MOST_BESIDE, MOST_BYTES_BESIDE = 50, 8 << 20  # files that lie beside one notebook, and their bytes
-DEEPEST = 10  # folders within folders
-MOST_UNPACKED = 4 << 30  # bytes of one archive, all files together
+# The most values in the JSON of one notebook. Each takes up to a hundred bytes of memory.
+MOST_VALUES = 1_000_000
+# The most files beside one notebook, and the most bytes of these together.
+MOST_BESIDE, MOST_BYTES_BESIDE = 50, 8 << 20
+# The deepest nesting of folders.
+DEEPEST = 10
+# The most bytes of all files of one archive, unpacked.
+MOST_UNPACKED = 4 << 30
 TOO_LARGE = "The archive unpacks to more than 4 GB. We did not read this file."
 
-#: Files that systems and browsers leave behind: no student handed them in.
+#: Files that systems and browsers leave behind; no student handed them in.
 LITTER = (
     ".git",
     "__MACOSX",
@@ -66,22 +70,23 @@ LITTER = (
     ".coursework",
     "__pycache__",
 )
-#: Archives of other kinds, or inside the archive that a student made.
+#: Archives that we do not open: those of other kinds, and those inside a student's archive.
 ARCHIVES = (".zip", ".rar", ".7z", ".tar", ".gz", ".tgz", ".bz2", ".xz")
-# What Brightspace, nbgrader and Gradescope put there.
+# Files that Brightspace, nbgrader and Gradescope add.
 INDEXES = ("index.html", "timestamp.txt", GRADESCOPE_TABLE)
 TEXT = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.S)
 REPLY = re.compile(r'<div class="coursework-reply"([^>]{0,2000})>')
 ABOUT_REPLY = re.compile(r'\bdata-(question|tries|tried|help)="([^"]{1,200})"')
-MOST_TRIED = 100  # of one question
-#: Pictures that are shown of one notebook, all together.
+# The most failed answers that we remember for one question.
+MOST_TRIED = 100
+#: The most bytes of pictures that we show from one notebook.
 MOST_BYTES_OF_PICTURES = 4 << 20
 MARKDOWN = "text/markdown"
 TRIED = re.compile(r"[0-9a-f]{6}")
 CHECK = re.compile(r"""\bcheck\(\s*['"]([^'"\n]{1,200})['"]""")
 
 
-#: How a notebook says whose it is, to get the numbers of that student.
+#: The call by which a notebook names its student, to get that student's numbers.
 SAYS = re.compile(
     r"""^[^#\n]*?\b(?:me|student)\(\s*(?P<mark>['"])(?P<who>[^'"\n]{1,200})(?P=mark)\s*,?\s*\)""",
     re.M,
@@ -89,12 +94,12 @@ SAYS = re.compile(
 
 
 def bare(source: str) -> str:
-    """Code without comments and blanks: what is left of it when somebody changes how it looks."""
+    """Return code without comments and blanks, which changes only when the code itself does."""
     return re.sub(r"\s+", "", re.sub(r"#[^\n]*", "", source))
 
 
 class CodeCell(TypedDict):
-    """A cell of code, as it was handed in."""
+    """A code cell, as it was handed in."""
 
     source: str
     execution_count: int | None
@@ -102,7 +107,7 @@ class CodeCell(TypedDict):
 
 @dataclass(frozen=True, order=True)
 class Refused(AsJson):
-    """A file that was handed in and is not graded, and why."""
+    """A submitted file that is not graded, and the reason."""
 
     file: str
     student: str
@@ -110,7 +115,7 @@ class Refused(AsJson):
 
 
 def refused_of(store: Store) -> list[Refused]:
-    """All files that were refused, of each folder that was handed in."""
+    """Return all refused files of all submitted folders."""
     known = store.said(REFUSED, by_name(many(Refused.from_json))) or {}
     return [one for place in known.values() for one in place]
 
@@ -124,19 +129,19 @@ class Beside(NamedTuple):
 
 
 class Notebook(NamedTuple):
-    """A notebook that was handed in; its cells are read when they are needed,
-    so that a class needs no memory.
+    """A submitted notebook. Its cells are read on demand, so that a large class needs little
+    memory.
 
     Attributes
     ----------
     file : str
         Its path in the submissions, as it was named.
     student : str
-        Who handed it in: by the roster, or as far as the file's name or folder says.
+        Who handed it in: by the roster, or as far as the file's name or folder shows.
     identity : Identity
-        The numbers and names under which a learning management system knows the student.
+        The IDs and names by which a learning management system knows the student.
     matched : str
-        How it is known whose it is.
+        How it was matched to the student.
     digest : str
         SHA-256 of the bytes that were read.
     named : list of str
@@ -144,16 +149,16 @@ class Notebook(NamedTuple):
     folder : str
         The folder it lies in, which may be named after its assignment.
     order : tuple
-        The greater, the newer: what the name declares, then the time of the file.
+        What the name declares, then the time of the file. The greatest is the newest.
     late : bool
     claim : Claim
     read : function
-        Gives its bytes.
+        Returns its bytes.
     beside : tuple of Beside
     handed_in : str
-        When, in ISO 8601, as the system says; without a time zone where the system names none.
+        The time in ISO 8601, as the system gives it; without a time zone if the system gives none.
     says : str
-        Whose it says that it is, for the numbers of its questions; empty if it does not.
+        The student whose numbers its questions use, as the notebook says; empty if it does not.
     of_assignment : str
         The folder of an assignment in which nbgrader collected it; empty elsewhere.
     """
@@ -181,22 +186,22 @@ class Notebook(NamedTuple):
         Raises
         ------
         Unfit
-            It was changed or removed since it was looked at first.
+                It was changed or removed since we first read it.
         """
         return read_notebook(_unchanged(self))[0]
 
     @property
     def remembered(self) -> dict[str, Remembered]:
-        """What its outputs remember of the way to an answer: see `remembered_in`."""
+        """The tries and help that its outputs remember for each question: see `remembered_in`."""
         return remembered_in(_unchanged(self))
 
     @property
     def pictures(self) -> dict[str, list[str]]:
-        """What its cells drew, as it keeps that: see `pictures_in`."""
+        """The pictures in its outputs: see `pictures_in`."""
         return pictures_in(_unchanged(self))
 
     def shows(self, text: str) -> bool:
-        """Whether one of its outputs shows a text as Markdown."""
+        """Check whether one of its outputs shows this text as Markdown."""
         for _, shown in outputs_in(_unchanged(self)):
             with contextlib.suppress(Unfit):
                 if text in _source(shown.get(MARKDOWN, "")):
@@ -217,7 +222,7 @@ def _unchanged(one: Beside | Notebook) -> bytes:
 
 
 class Unfit(ValueError):
-    """A file cannot be graded; the message says why."""
+    """An error for a file that cannot be graded; the message gives the reason."""
 
 
 def take_in(
@@ -227,7 +232,7 @@ def take_in(
     student: str | None = None,
     out: str | Path | None = None,
 ) -> tuple[list[Notebook], list[Refused]]:
-    """Read all that was handed in.
+    """Read everything that was handed in.
 
     Parameters
     ----------
@@ -236,12 +241,12 @@ def take_in(
     assignments : iterable of str
         Names of assignments, to tell a student's name from an assignment's in the name of a file.
     roster : Roster, optional
-        Who is in the course. What fits nobody in it, or several, is refused: a person must say
-        whose it is.
+        The people in the course. We refuse a file that matches nobody or several people, so that a
+        person decides whose it is.
     student : str, optional
-        The one student who handed all of it in.
+        The one student who handed in everything.
     out : path, optional
-        The folder of results, which nobody handed in wherever it lies.
+        The folder of results, which is never read as a submission.
 
     Returns
     -------
@@ -285,7 +290,7 @@ def take_in(
         for claim, name, _ in files_of_source:
             if PurePosixPath(name).name in INDEXES or layout.is_beside_submissions(name):
                 continue
-            # Blackboard writes a text about each attempt, which nobody handed in.
+            # Blackboard writes a text file about each attempt, which nobody handed in.
             of_system = claim and claim.given_by_system and not claim.file
             if not (of_system or _is_by_the_way(name)) or (claim and source not in have):
                 whose = claim.student if claim else ""
@@ -299,27 +304,23 @@ def take_in(
     return notebooks, [_of_whom(one, layout, roster) for one in refused]
 
 
-#: A browser to which notebooks are unknown saves them with an ending of its own.
+#: The ending that a browser adds to notebooks when it does not know their type.
 ADDED = re.compile(r"(?<=\.ipynb)\.(?:txt|json)$", re.IGNORECASE)
 
 
 def _of_whom(refused: Refused, layout: Layout, roster: Roster | None) -> Refused:
-    """A file that was refused, with whose it is where a roster says so: its
-    student did not hand in nothing.
-    """
+    """Name a refused file's student by the roster, so that their work does not seem missing."""
     claim = layout.claim(refused.file)
     known = roster.find(claim.keys, claim.place)[0] if roster and claim else None
     return refused if known is None else replace(refused, student=known)
 
 
-#: nbgrader's file beside what was handed in. Its time zone is UTC unless a course has changed that.
+#: nbgrader's file beside a submission. Its time zone is UTC unless the course changed that.
 TIMESTAMP = "timestamp.txt"
 
 
 def _when(one: Notebook, others: Others, layout: Layout) -> str:
-    """When a notebook was handed in, as the system says and never a
-    student's file; empty if it says nothing.
-    """
+    """Return the system's time of a submission, never that of a student's file; empty if none."""
     if one.claim.handed_in or not layout.is_nbgraders:
         return one.claim.handed_in
     place = PurePosixPath(*PurePosixPath(one.file).parts[: len(layout.enclosing) + 2], TIMESTAMP)
@@ -330,7 +331,7 @@ def _when(one: Notebook, others: Others, layout: Layout) -> str:
     return ""
 
 
-#: How nbgrader, Moodle in English and spreadsheets write times.
+#: The formats of times of nbgrader, Moodle in English and spreadsheets.
 FORMATS = (
     "%Y-%m-%d %H:%M:%S.%f",
     "%A, %d %B %Y, %I:%M %p",
@@ -340,7 +341,7 @@ FORMATS = (
 
 
 def as_time(text: str) -> str | None:
-    """A time as a system writes it, in ISO 8601; ``None`` if it is none.
+    """Return a system's time in ISO 8601, or ``None`` if it is not a time.
 
     >>> as_time("2026-11-21 20:01:00.5 UTC"), as_time("Saturday, 21 November 2026, 8:01 PM")
     ('2026-11-21T20:01:00.500000+00:00', '2026-11-21T20:01:00')
@@ -368,9 +369,7 @@ def _take(
     read: Read,
     outer: str,
 ) -> None:
-    """Look at one file; `outer` is its name, or that of the archive it was
-    packed in, which says whose it is.
-    """
+    """Read one file; `outer`, its own name or its archive's, determines whose it is."""
     claim = layout.claim(outer)
     if name != outer and claim:
         claim = claim._replace(file=name.removeprefix(f"{outer}/"))
@@ -411,7 +410,7 @@ def _take(
 
 
 def _says(cells: Iterable[CodeCell]) -> str:
-    """Whose a notebook says that it is: the last time that it says so."""
+    """Return the student that a notebook names last; empty if it names none."""
     said = [
         found["who"]
         for cell in cells
@@ -424,7 +423,7 @@ def _says(cells: Iterable[CodeCell]) -> str:
 def _with_student(
     one: Notebook, roster: Roster | None, student: str | None, refused: list[Refused]
 ) -> Notebook | None:
-    """The notebook with its student, or ``None`` if nobody knows whose it is."""
+    """Return the notebook with its student, or ``None`` if nobody knows whose it is."""
     known = {
         kind: value
         for kind, value in one.claim.keys
@@ -462,14 +461,14 @@ NOT_MATCHED = "In the roster, write the name of its folder or file in a column `
 def _without_conflicts(
     notebooks: Sequence[Notebook], roster: Roster | None, refused: list[Refused]
 ) -> list[Notebook]:
-    """Leave out what two submissions claim to be: one of them may be a classmate's."""
+    """Leave out all notebooks of a student whom two submissions claim: one may be a classmate's."""
     first: dict[str | tuple[str, str], str] = {}
     several: dict[str | tuple[str, str], tuple[set[str], set[str]]] = {}
     for one in notebooks:
         for identity in _identities(one, roster):
             if first.setdefault(identity, one.claim.source) != one.claim.source:
                 several[identity] = set(), set()
-    # Nearly all names are claimed once: only of the others is it kept by whom.
+    # Nearly all names are claimed once, so collect the claimants of the others only.
     for one in notebooks if several else ():
         for identity in several.keys() & set(_identities(one, roster)):
             sources, students = several[identity]
@@ -491,16 +490,16 @@ def _without_conflicts(
 
 
 def _identities(one: Notebook, roster: Roster | None) -> tuple[str | tuple[str, str], ...]:
-    """Who a notebook claims to be of, unless the person who grades has said so."""
+    """Return the identities that a notebook claims; none if the person who grades has named it."""
     if one.matched == "as you said":
         return ()
-    # A name that only looks the same, or that differs in capitals alone, claims the same. Those of
-    # a roster are told apart by it.
+    # Without a roster, names that look the same or differ only in capitals are the same claim. A
+    # roster tells such names apart.
     return looks_like(one.student) if roster is None else one.student, *_numbers(one.claim)
 
 
 def _numbers(claim: Claim) -> list[tuple[str, str]]:
-    """The number by which the system knows a student: it writes none beside two names."""
+    """Return the system's own ID of a student, which it never gives to two people."""
     return [
         key
         for key in claim.keys
@@ -509,9 +508,7 @@ def _numbers(claim: Claim) -> list[tuple[str, str]]:
 
 
 def _beside(one: Notebook, others: Others) -> tuple[Beside, ...]:
-    """The files that lie where the notebook lies, or below, by
-    the names that its code would use.
-    """
+    """Return the files in the notebook's folder or below, by the names that its code would use."""
     found: list[Beside] = []
     folder, total = PurePosixPath(one.claim.file).parent, 0
     for claim, _, read in others.get(one.claim.source, ()):
@@ -532,9 +529,7 @@ def _beside(one: Notebook, others: Others) -> tuple[Beside, ...]:
 
 
 def _as_named_before(found: Sequence[Beside]) -> list[Beside]:
-    """What Canvas numbered because it was handed in again, also by the
-    name that the notebook's code uses.
-    """
+    """List files that Canvas renamed on resubmission by their old names, which the code uses."""
     numbered: dict[str, list[tuple[int, Beside]]] = {}
     names = {one.name for one in found}
     for one in found:
@@ -552,7 +547,7 @@ def _as_named_before(found: Sequence[Beside]) -> list[Beside]:
 
 
 class _Folder:
-    """A folder that is held open for as long as somebody may read from it."""
+    """A folder, held open for as long as anybody may read from it."""
 
     def __init__(self, path: str) -> None:
         self.handle = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
@@ -564,9 +559,9 @@ class _Folder:
 def _files(
     path: str, refused: list[Refused], repositories: set[str], out: str | Path | None = None
 ) -> Iterator[Found]:
-    """Give the name of each file, its time, and a function that reads it: in a fixed order.
+    """Iterate in a fixed order over the name of each file, its time and a function that reads it.
 
-    The names of folders that are repositories of Git are added to ``repositories``.
+    Add the names of folders that are Git repositories to ``repositories``.
     """
     if os.path.isdir(path):
         yield from _files_of_folder(path, refused, repositories, out)
@@ -588,7 +583,7 @@ def _files_of_folder(
     results = os.stat(out) if out and os.path.isdir(out) else None
     if results and os.path.samestat(results, os.stat(root)):
         raise Unfit(f"{root} contains the submissions. Choose a different folder for the results.")
-    # By handles of folders: a name that is exchanged for a link meanwhile leads nowhere.
+    # Open by handles of folders, so that a folder exchanged for a link meanwhile leads nowhere.
     top = _Folder(root)
     for folder, folders, files, handle in os.fwalk(".", dir_fd=top.handle, follow_symlinks=False):
         folders.sort()
@@ -619,7 +614,7 @@ def _files_of_folder(
 
 
 def _text(name: str) -> str:
-    """A file's name as text that can be written: bytes that are no UTF-8 are shown as such."""
+    """Return a file's name as printable text, in which bytes that are not UTF-8 are escaped."""
     return os.fsencode(name).decode("utf8", "backslashreplace")
 
 
@@ -628,7 +623,7 @@ def _is_litter(name: str) -> bool:
 
 
 def _read_below(top: _Folder, name: str) -> bytes:
-    """Read a file through its folders one by one, following no link."""
+    """Open a file's folders one by one, following no link, and read it."""
     with contextlib.ExitStack() as stack:
         handle = top.handle
         *folders, last = name.split("/")
@@ -647,7 +642,7 @@ def _read_below(top: _Folder, name: str) -> bytes:
 
 def _read_file(name: str, folder: int) -> bytes:
     try:
-        # Not waiting, for what has become a channel in which nobody writes.
+        # Do not block if the file was replaced by a named pipe that nobody writes to.
         handle = os.open(
             name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC, dir_fd=folder
         )
@@ -667,7 +662,8 @@ def _no_more_than(data: bytes) -> bytes:
 
 def _files_of_archive(path: str, refused: list[Refused], repositories: set[str]) -> Iterator[Found]:
     path = os.path.abspath(path)
-    _archive.cache_clear()  # another archive may have come to the same place
+    # Another archive may have replaced the one at this path.
+    _archive.cache_clear()
     try:
         entries = _entries(_archive(path, os.getpid()))
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
@@ -686,7 +682,7 @@ def _files_of_archive(path: str, refused: list[Refused], repositories: set[str])
 
 @functools.lru_cache(1)
 def _archive(path: str, process: int) -> zipfile.ZipFile:
-    """An archive as this process has it open: two that read from one place move each other's."""
+    """Open an archive for this process; two sharing a handle would move each other's position."""
     return zipfile.ZipFile(path)
 
 
@@ -695,8 +691,10 @@ def _read_of_class(path: str, entry: zipfile.ZipInfo) -> bytes:
 
 
 def _entries(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
-    """The entries of an archive, sorted by name. Each name is text that can be written, with a
-    slash between folders: PowerShell 5 and other programs on Windows write a backslash there.
+    """Return the entries of an archive, sorted by name.
+
+    Each name can be encoded and has slashes between folders, although PowerShell 5 and other
+    Windows programs write backslashes.
     """
     for entry in archive.infolist():
         name = entry.filename.replace("\\", "/")
@@ -707,7 +705,7 @@ def _entries(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
 def _readable(
     entries: list[zipfile.ZipInfo], refused: list[Refused], folder: str = ""
 ) -> Iterator[tuple[str, zipfile.ZipInfo]]:
-    """The files of an archive that can be read, with the names under which we report them."""
+    """Iterate over the readable files of an archive, with the names under which we report them."""
     names = Counter(entry.filename for entry in entries)
     for entry in entries:
         if entry.is_dir() or _is_litter(entry.filename):
@@ -737,7 +735,7 @@ def _why_not_unpacked(entry: zipfile.ZipInfo) -> str:
 def _read_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
     try:
         with archive.open(entry) as file:
-            # The size that is declared may be a lie.
+            # The declared size may be false.
             return _no_more_than(file.read(MOST_BYTES + 1))
     except (
         zipfile.BadZipFile,
@@ -756,7 +754,7 @@ def _read_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
 
 
 def _inside_archive(name: str, read: Read, refused: list[Refused]) -> Iterator[tuple[str, Read]]:
-    """The files of an archive that a student packed: their names, and functions that read them."""
+    """Iterate over the files of a student's archive: their names, and functions that read them."""
     try:
         data = read()
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
@@ -777,9 +775,7 @@ def _read_packed(read: Read, entry: zipfile.ZipInfo) -> bytes:
 
 
 def _is_by_the_way(name: str) -> bool:
-    """Whether a file is none that a student handed in for marks: an
-    index, a picture beside a notebook.
-    """
+    """Check whether a file needs no mention: an index, or data and pictures beside a notebook."""
     path = PurePosixPath(name)
     return (
         path.name in ("index.html", "timestamp.txt")
@@ -810,12 +806,12 @@ def _is_by_the_way(name: str) -> bool:
 
 
 def read_notebook(data: bytes) -> tuple[list[CodeCell], list[str]]:
-    """Give the code cells of a notebook, and nbgrader's names in its metadata.
+    """Return the code cells of a notebook, and nbgrader's names in its metadata.
 
     Raises
     ------
     Unfit
-        These bytes are no notebook; the message says what is the matter.
+        These bytes are not a notebook; the message gives the reason.
     """
     notebook = _json(data)
     if (version := notebook.get("nbformat", 4)) != 4:
@@ -849,14 +845,15 @@ def read_notebook(data: bytes) -> tuple[list[CodeCell], list[str]]:
 
 
 def remembered_in(data: bytes) -> dict[str, Remembered]:
-    """What the replies that a notebook shows remember, by question.
+    """Read what the replies shown in a notebook remember, by question.
 
-    It is the student's to change: who deletes it is not found out.
+    Students can change it, and we do not notice if they delete it.
     """
     found: dict[str, Remembered] = {}
     if b"coursework-reply" not in data:
         return found
-    text = data.decode("utf8", "replace").replace('\\"', '"')  # as it stands in the texts of JSON
+    # The quotes are escaped inside JSON strings.
+    text = data.decode("utf8", "replace").replace('\\"', '"')
     for reply in REPLY.findall(text):
         about = dict(ABOUT_REPLY.findall(reply))
         if (
@@ -875,11 +872,10 @@ def remembered_in(data: bytes) -> dict[str, Remembered]:
 
 
 def pictures_in(data: bytes) -> dict[str, list[str]]:
-    """The pictures under each code cell of a notebook, as it was handed in: texts
-    in base64, by the cell's number.
+    """Return the pictures under each code cell in base64, by the cell's number.
 
-    They are the student's to change, and are for people to look at; what is no
-    picture from end to end is left out.
+    Students can change them, and only people look at them. What is not a complete picture is left
+    out.
     """
     found: dict[str, list[str]] = {}
     left = MOST_BYTES_OF_PICTURES
@@ -895,7 +891,7 @@ def pictures_in(data: bytes) -> dict[str, list[str]]:
 
 
 def outputs_in(data: bytes) -> Iterator[tuple[int, dict[str, object]]]:
-    """What the code cells of a notebook show, by kind, each with the number of its cell."""
+    """Iterate over the outputs of the code cells, by MIME type, with the number of each cell."""
     cells = [cell for cell in _list(_json(data).get("cells", [])) if isinstance(cell, dict)]
     code = [cell for cell in cells if cell.get("cell_type") == "code"]
     for number, cell in enumerate(code):
@@ -930,7 +926,7 @@ def _json(data: bytes) -> dict[str, object]:
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         raise Unfit("It is encoded in UTF-16, but notebooks must be in UTF-8.")
     if sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
-        # Strings are removed first, since signs in them, such as in a long output, are not values.
+        # Remove strings first, since signs in them, such as in a long output, are not values.
         without_texts = TEXT.sub(b"", data)
         if sum(map(without_texts.count, (b",", b"[", b"{"))) > MOST_VALUES:
             raise Unfit(f"It has more than {MOST_VALUES} parts, too many for a notebook.")

@@ -1,17 +1,17 @@
-"""What the columns of gradebooks are called in other languages.
+"""The names of gradebook columns in other languages.
 
-Canvas writes its columns in English, whatever the language (`lib/gradebook_exporter.rb` of
-instructure/canvas-lms: the headers are constants, and only numbers follow the language). Moodle's
-worksheet has the words of the language packs (`mod/assign/gradingtable.php` of moodle/moodle:
-`recordid`, `maxgrade` and `gradecanbechanged` of `assign`, the others of `moodle`; the packs as
-projectestac/moodle-langpacks keeps them, June 2026, and for Portuguese also the `grade` of earlier
-versions, as in mudrd8mz/moodle-lang). Of Brightspace's other languages no public source was found:
-there the columns are named by hand.
+Canvas always writes its columns in English (`lib/gradebook_exporter.rb` of instructure/canvas-lms:
+the headers are constants, and only the format of numbers follows the language). Moodle's worksheet
+uses the words of the language packs (`mod/assign/gradingtable.php` of moodle/moodle: `recordid`,
+`maxgrade` and `gradecanbechanged` of `assign`, the others of `moodle`; the packs as of June 2026 in
+projectestac/moodle-langpacks, and for Portuguese also the `grade` of earlier versions, as in
+mudrd8mz/moodle-lang). We found no public source for Brightspace's other languages, so there an
+instructor names the columns.
 """
 
 from collections.abc import Iterable
 
-#: The columns of Moodle's worksheet in English, and how "no" is said in them.
+#: The columns of Moodle's worksheet in English.
 MOODLE = (
     "identifier",
     "full name",
@@ -22,8 +22,8 @@ MOODLE = (
     "maximum grade",
     "grade can be changed",
 )
-#: The same in other languages, and the word for "no"; what was called
-#: otherwise earlier stands behind a stroke.
+#: The same columns in other languages, then the word for "no". A bar separates a word from the one
+#: that earlier versions used.
 LANGUAGES = {
     "German": (
         "ID",
@@ -249,10 +249,10 @@ LANGUAGES = {
 
 
 def in_english(header: Iterable[str]) -> tuple[dict[str, str], str]:
-    """What the columns of a worksheet of Moodle in another language are called in
-    English, and how "no" is said there.
+    """Translate the columns of a Moodle worksheet into English, and return its word for "no".
 
-    Told from the two columns that no worksheet lacks: who it is, and the grade.
+    The language is recognised by the two columns that every worksheet has: the identifier and the
+    grade.
 
     >>> in_english(["ID", "Vollst\xe4ndiger Name", "Bewertung"])
     ({'id': 'identifier', 'vollst\xe4ndiger name': 'full name', 'bewertung': 'grade'}, 'nein')

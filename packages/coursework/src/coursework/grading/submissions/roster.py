@@ -1,6 +1,4 @@
-"""The roster: who is in the course, from a table of the instructor's or
-the gradebook that a system exports.
-"""
+"""The roster of a course, read from the instructor's table or a system's exported gradebook."""
 
 import csv
 import io
@@ -17,7 +15,7 @@ from .languages import in_english
 
 Key = TypeVar("Key")
 
-#: What the columns of rosters and exported gradebooks are called, and what they hold.
+#: The names of the columns in rosters and exported gradebooks, by what they contain.
 COLUMNS = {
     "own": (
         "sid", "student", "student id", "student_id", "username", "user name", "login",
@@ -52,22 +50,22 @@ WORDS = {
 
 
 class BadRoster(ValueError):
-    """A roster cannot be used; the message says why, and in which line."""
+    """An error for a roster that cannot be used; the message gives the reason and the line."""
 
 
 @dataclass(frozen=True)
 class Person:
-    """Somebody in the course.
+    """A person in the course.
 
     Attributes
     ----------
     called : mapping of tuples of str
-        What the roster calls them, by a key of `WORDS`.
+        The person's names and IDs in the roster, by a key of `WORDS`.
     row : mapping of str
-        Their whole line, by the names of the columns in small letters.
+        The whole row of the roster, by the lower-case names of the columns.
     local_part : str
-        What stands before the sign in their address, if it is of the same place as most; or
-        nothing.
+        The part of the address before the at sign, if the domain is the most frequent one; or
+        empty.
     """
 
     called: Mapping[str, tuple[str, ...]]
@@ -76,16 +74,14 @@ class Person:
 
     @property
     def student(self) -> str | None:
-        """The name that they have here, and that their variants follow
-        from; ``None`` if there is none.
-        """
+        """The person's name here, which also determines their variants, or ``None``."""
         return next(
             (value for kind in ("own", "email", "name") for value in self.called.get(kind, ())),
             None,
         )
 
     def spellings(self) -> Iterator[tuple[str, str]]:
-        """All that they may be found by: a kind, and a value."""
+        """Iterate over everything that identifies the person, each as a kind and a value."""
         for kind, values in self.called.items():
             for value in values:
                 yield kind, value
@@ -100,21 +96,21 @@ class Person:
 
 
 class Roster:
-    """Who is in the course: the only source of identity where it is given.
+    """The people in the course. Where there is a roster, it alone decides who somebody is.
 
     Parameters
     ----------
     path : path
         A table of comma-separated values, or the gradebook that Canvas, Moodle or Brightspace
-        exports. Read are the columns of `COLUMNS`; ``handed in as`` holds names of folders or
-        files, separated by semicolons, for what cannot be matched otherwise.
+        exports, with columns of `COLUMNS`. The column ``handed in as`` contains names of folders or
+        files, separated by semicolons, that cannot be matched otherwise.
     groups : mapping, optional
-        The members of each group: what fits several of one group is the group's.
+        The members of each group. What matches several members of one group is the group's.
 
     Attributes
     ----------
     people : dict of str to Person
-        By their names here.
+        The people, by their names here.
     """
 
     def __init__(self, path: str | Path, groups: Mapping[str, Iterable[str]] | None = None) -> None:
@@ -126,7 +122,8 @@ class Roster:
         for line, row in _rows(self.path):
             person = Person(_called(row), row)
             if person.student is None:
-                continue  # Canvas's line of possible points
+                # This is Canvas's row of possible points.
+                continue
             if person.student in self.people:
                 raise BadRoster(f"{path}, line {line}: {person.student!r} is listed twice.")
             self.people[person.student] = person
@@ -151,18 +148,20 @@ class Roster:
             self.index.setdefault(("own", _same("own", group)), set()).add(group)
 
     def find(self, keys: Iterable[tuple[str, str]], place: str = "") -> tuple[str | None, str]:
-        """The student that a claim's keys mean and the kind that told, or
-        ``None`` and why nobody is meant.
+        """Return the student that a claim's keys mean and how they matched, or ``None`` and why
+        nobody.
 
-        ``place`` is the name of the folder or file, for which the
-        roster may have a word of its own.
+        ``place`` is the name of the folder or file, which the roster may list under ``handed in
+        as``.
         """
         names = dict.fromkeys((place, PurePosixPath(place).stem)) if place else ()
         keys = (*(("handed in as", name) for name in names), *keys)
         surest = ""
         for kind, value in keys:
             if surest not in ("", kind):
-                break  # the system's number is known of others, so a name does not overrule it
+                # The roster has the system's IDs, so a name must not overrule one that matches
+                # nobody.
+                break
             found = self.index.get((kind, _same(kind, value)), set())
             if len(found) == 1:
                 return next(iter(found)), WORDS[kind]
@@ -188,15 +187,16 @@ class Roster:
         return None, "Nobody in the roster matches."
 
     def are_a_group(self, people: Iterable[Iterable[tuple[str, str]]]) -> bool:
-        """Whether all whom these keys mean work in one group."""
+        """Check whether all people that these keys mean work in one group."""
         names = [self.find(keys)[0] or "" for keys in people]
         groups = {self.group_of.get(name, name) for name in names}
         return len(groups) == 1 and groups <= set(self.group_of.values())
 
     def identity(self, student: str) -> Identity:
-        """What is known of a student, as a record holds it."""
+        """Return the student's identity, as a record stores it."""
         if student not in self.people:
-            return Identity({}, (student,))  # a group
+            # This is a group.
+            return Identity({}, (student,))
         person = self.people[student]
         kinds = ("canvas", "moodle", "brightspace", "name", "email")
         called = {kind: person.called[kind][0] for kind in kinds if person.called.get(kind)}
@@ -207,13 +207,13 @@ class Roster:
 
 
 def cells_in(path: Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
-    """The names of a table's columns, in small letters, and the cells of each line."""
+    """Return a table's column names in lower case, and an iterator over the cells of each line."""
     data = path.read_bytes()
     encoding, mark = encoding_of(data)
     text = data[len(mark) :].decode(encoding)
     first = text.split("\n", 1)[0]
-    # Not at every sign that ends a line somewhere: students choose their names,
-    # and would begin a line of theirs.
+    # Split lines only where CSV does. Students choose their names, and with a rarer line separator
+    # in them they could begin a line of their own.
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
     return header, ((reader.line_num, list(map(str.strip, cells))) for cells in reader)
@@ -236,7 +236,7 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
 
 
 def encoding_of(data: bytes) -> tuple[str, bytes]:
-    """The encoding in which a spreadsheet or a system left a table, and the mark in front of it."""
+    """Return the encoding of a table from a spreadsheet or a system, and its byte order mark."""
     for mark, encoding in (
         (b"\xef\xbb\xbf", "utf-8"),
         (b"\xff\xfe", "utf-16-le"),
@@ -248,27 +248,29 @@ def encoding_of(data: bytes) -> tuple[str, bytes]:
         data.decode("utf-8")
         return "utf-8", b""
     except UnicodeDecodeError:
-        return "latin-1", b""  # gives every byte back as it was
+        # Latin-1 preserves every byte.
+        return "latin-1", b""
 
 
 def _called(line: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
-    """What a line of a roster calls a student, by kind."""
+    """Return the names and IDs that a row of a roster gives a student, by kind."""
     row = dict(line)
     of_canvas = "section" in row or "sis login id" in row or "sis user id" in row
     if "id" in row and ("student" in row or "lastname" in row) and of_canvas:
-        # Canvas's gradebook, with the name in one column or in two.
+        # This is Canvas's gradebook, with the name in one column or in two.
         row["name"], row["canvas"] = row.pop("student", ""), row.pop("id")
         if not row["canvas"]:
             return {}
         if "," in row["name"]:
             row["name"] = turned(row["name"])
     elif "identifier" in row and ("full name" in row or "grade" in row):
-        # Moodle's worksheet: "Participant 17", which is all that a blind one says.
+        # This is Moodle's worksheet. In blind marking it has nothing but "Participant 17".
         row["moodle"] = re.sub(r"\D", "", row["identifier"])
         if any(row.get(name) for name in ("full name", *COLUMNS["email"], "id number", "username")):
             del row["identifier"]
     elif "id" in row:
-        row.setdefault("student id", row.pop("id"))  # nbgrader's list
+        # This is nbgrader's list.
+        row.setdefault("student id", row.pop("id"))
     known = {
         kind: [value for name in names if (value := row.get(name, "").lstrip("#"))]
         for kind, names in COLUMNS.items()
@@ -285,9 +287,9 @@ def _called(line: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
 
 
 def local_parts(addresses: Mapping[Key, str]) -> dict[Key, str]:
-    """What stands before the sign in addresses, of those alone that are of the same place as most.
+    """Return the local parts of the addresses in the most frequent domain.
 
-    The others anybody may have chosen, to be called at home what somebody else is called here.
+    Anybody can choose an address elsewhere, with a local part that is somebody else's here.
 
     >>> local_parts({1: 'ann@uni.example', 2: 'bob@uni.example', 3: 'ann@mail.example'})
     {1: 'ann', 2: 'bob'}
@@ -300,7 +302,7 @@ def local_parts(addresses: Mapping[Key, str]) -> dict[Key, str]:
 
 
 def turned(name: str) -> str:
-    """``Last, First`` the other way round; without a comma, the last word first."""
+    """Turn ``Last, First`` round; without a comma, move the last word to the front."""
     last, comma, first = name.partition(",")
     if comma:
         return f"{first.strip()} {last.strip()}"
@@ -309,7 +311,7 @@ def turned(name: str) -> str:
 
 
 def _same(kind: str, value: str) -> str:
-    """One spelling of what people write in several ways."""
+    """Return one spelling of a value that people write in several ways."""
     value = unicodedata.normalize("NFKC", value).casefold()
     value = "".join(sign for sign in value if unicodedata.category(sign) != "Cf")
     if kind == "letters":
