@@ -1,9 +1,9 @@
-"""What a student was asked, kept beside what the student answered.
+"""The question that each student was asked, stored beside the student's answer.
 
-A question may be mended in mid-term, a variant of it taken out, a call of a function exchanged. An
-answer is judged by what its author saw all the same: a `Case` names the variant by what is
-given in it, not by its number, and the contract, the question as it stood then, by its version.
-Contracts lie in the folder of results, one file each.
+An author may correct a question in mid-term, remove a variant or replace a function call. An answer
+is nevertheless judged by what its author saw. A `Case` therefore identifies a variant by its
+content, not by its number, and the contract, the question as it stood then, by its version. The
+folder of results holds each contract in a file of its own.
 """
 
 import json
@@ -34,16 +34,14 @@ class Contracts:
         self._kept: set[str] = set()
 
     def keep(self, contract: Contract) -> None:
-        """Keep a question; it holds right answers, so that nobody
-        else on this machine may read it.
-        """
+        """Store a question, readable by this user only since it contains the right answers."""
         path = self._path(contract.version)
         if contract.version not in self._kept and not path.exists():
             write(path, json.dumps(contract.as_json(), ensure_ascii=False), private=True)
         self._kept.add(contract.version)
 
     def of(self, version: str) -> Contract | None:
-        """The question of a version, or ``None`` if nobody kept it."""
+        """Return the question of a version, or ``None`` if it was not stored."""
         if version not in self._known:
             path = self._path(version)
             if path.exists():
@@ -57,9 +55,7 @@ class Contracts:
 
 
 def answered(case: Case, asked: Asked) -> Case:
-    """The same case, once a notebook was run and asked for this: what
-    was mended by then is its contract.
-    """
+    """Return the case of a notebook just run for this question, with its current contract."""
     versions = {name: contract.version for name, contract in asked.second_chances.items()}
     siblings = {
         name: Place(place.variant, versions.get(name, place.contract))
@@ -69,20 +65,20 @@ def answered(case: Case, asked: Asked) -> Case:
 
 
 def variants_of(variants: Sequence[Contract]) -> dict[str, Contract]:
-    """The variants of a question by their names, in the order of their numbers.
+    """Return the variants of a question by their names, in the order of their numbers.
 
-    A name follows from what is given in a variant, so it is the same wherever in the order the
-    variant stands, and whatever of its solution, hints and worth was mended.
+    A name depends only on a variant's content, so it stays the same when variants are reordered, or
+    when their solution, hints or worth are corrected.
     """
     return dict(zip(names_of_variants(one.variant for one in variants), variants, strict=True))
 
 
 def case_by_rule(name: str, variants: Sequence[Contract], identity: str) -> Case:
-    """The case of a student who is asked this question now."""
+    """Return the case of a student who is asked this question now."""
     order = numbers_of_variants(identity, name, variants[0].variant, len(variants))
     names, first = list(variants_of(variants)), variants[0]
     places = [Place(names[number], variants[number].version) for number in order]
-    # In an exam each has one question.
+    # In an exam, each student has one question without siblings.
     siblings = [] if first.question.exam else siblings_of(name, len(names))
     how = "by name, of" if first.variant.names else f"number {order[0]} of"
     return Case(
@@ -95,7 +91,7 @@ def case_by_rule(name: str, variants: Sequence[Contract], identity: str) -> Case
 
 
 def questions_in(path: Path) -> dict[str, tuple[Contract, ...]]:
-    """The questions of a notebook as they were worked out, each in all its variants, by name.
+    """Return the processed questions of a notebook, each in all its variants, by name.
 
     Raises
     ------
@@ -105,9 +101,9 @@ def questions_in(path: Path) -> dict[str, tuple[Contract, ...]]:
 
 
 def judged_alike(one: Contract | None, other: Contract | None) -> bool:
-    """Whether answers are judged by two contracts alike.
+    """Check whether two contracts judge answers in the same way.
 
-    Of a question that nobody kept nothing is known, and so nothing is said against it.
+    If either was not stored, we assume so.
     """
     return (
         one is None or other is None or one.version == other.version or one.judging == other.judging
@@ -115,10 +111,10 @@ def judged_alike(one: Contract | None, other: Contract | None) -> bool:
 
 
 def changed_since(decided: Decision | None, record: Record, contracts: Contracts) -> str:
-    """What is another thing than when a person decided: ``"answer"``, ``"question"`` or nothing.
+    """Return what changed since a person decided: ``"answer"``, ``"question"`` or nothing.
 
-    On another answer a decision does not count; on one that is judged otherwise by now it does,
-    until somebody decides again, and both are shown.
+    A decision does not count for a changed answer. For a changed question it counts until somebody
+    decides again, and both versions are shown.
     """
     if decided is None or decided.question not in record.marks:
         return ""
@@ -135,19 +131,20 @@ def case_of(
     contracts: Contracts,
     shows: Callable[[str], bool],
 ) -> Case:
-    """The case of a student whose work was never graded, where the source had other variants at
-    other times: the variant that the notebook shows, or else that of today.
+    """Choose the case of a student never graded, although the source has had other variants.
+
+    This is the variant that the notebook shows, or else today's.
 
     Parameters
     ----------
     name : str
     editions : sequence
-        The variants of today, and those of other times.
+        Today's variants, and those of earlier times.
     identity : str
     contracts : Contracts
-        Keeps what is the student's and not in the source any more.
+        Stores this student's variants, which the source may no longer have.
     shows : function
-        Whether the notebook shows a text.
+        Returns whether the notebook shows a text.
     """
     cases: dict[str, Case] = {}
     texts: dict[str, str] = {}
@@ -172,8 +169,9 @@ def case_of(
 def asked_of(
     name: str, variants: Sequence[Contract], case: Case, contracts: Contracts | None
 ) -> Asked:
-    """The question of a case as it is judged now: mended if its variant is
-    still there, or else as it stood.
+    """Return the question of a case as it is judged now.
+
+    It is the corrected variant if the source still has it, or else the stored one.
     """
     by_their_names = variants_of(variants)
 

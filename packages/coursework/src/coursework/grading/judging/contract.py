@@ -1,6 +1,4 @@
-"""All that marks need of a question: its contract, and what belongs
-to it where one student is asked it.
-"""
+"""Contracts: everything that marking needs to know about a question."""
 
 from __future__ import annotations
 
@@ -17,18 +15,18 @@ from ..reading import AsJson
 
 @dataclass(frozen=True)
 class Elsewhere(AsJson):
-    """Where an answer is compared once more, which no student can know.
+    """A secret second comparison of an answer, which no student can know.
 
     Attributes
     ----------
     salt : str or None
-        From which other points follow.
+        Determines other points.
     calls : tuple of lists
         Other arguments of a function.
     right : tuple of str
         The numbers of the right answer there.
     partly : mapping
-        Those of each mistake that earns something, by its fingerprint.
+        The numbers of each mistake that earns credit, by its fingerprint.
     """
 
     salt: str | None = None
@@ -37,7 +35,7 @@ class Elsewhere(AsJson):
     partly: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def of(self, question: Question) -> Question:
-        """A question as it is asked there."""
+        """Return the question as it is asked there."""
         return (
             replace(question, calls=self.calls)
             if self.salt is None
@@ -46,15 +44,13 @@ class Elsewhere(AsJson):
 
     @property
     def digest(self) -> str:
-        """A short text that follows from the calls: answers to other
-        calls are not compared with these.
-        """
+        """A digest of the calls, so that answers to other calls are not compared with these."""
         return hashlib.sha256(json.dumps(self.calls).encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
 class Contract(AsJson):
-    """A question as it stands, in one of its variants.
+    """A version of a question, in one of its variants.
 
     Attributes
     ----------
@@ -66,20 +62,20 @@ class Contract(AsJson):
         The share of the points that a mistake earns, by its note.
     question : Question
     known : mapping
-        The locker of each known answer, by its fingerprint: `locker` reads it.
+        The locker of each known answer, by its fingerprint; see `locker`.
     right : tuple of str or None
         The numbers of an exact right answer.
     plain : Plain or None
-        The right answer, but for a function.
+        The right answer, except that of a function.
     secret : Elsewhere or None
     partial : str or None
-        The right answer in words, whose parts earn their share.
+        The right answer in words, each part of which earns its share.
     rubric : mapping of float or None
-        What a person looks for, with points where its author says so.
+        The criteria for a person who marks, with points where the author gives them.
     text : str
-        In the source; beside that of a variant, its figures.
+        The text in the source; if the question has variants, only its figures.
     version : str
-        What follows from all this.
+        A digest of all of this.
     """
 
     title: str
@@ -97,12 +93,12 @@ class Contract(AsJson):
     version: str = ""
 
     def with_version(self) -> Contract:
-        """The same with the version that follows from everything else."""
+        """Return the same contract with the version that everything else determines."""
         said = json.dumps(replace(self, version="").as_json(), sort_keys=True)
         return replace(self, version=hashlib.sha256(said.encode()).hexdigest()[:16])
 
     def locker(self, fingerprint: str) -> Locker | None:
-        """What is known of a fingerprint."""
+        """Return the locker of a known answer's fingerprint, or ``None``."""
         found = self.known.get(fingerprint)
         return None if found is None else Locker.from_json(found, f"{self.title}: 'known'")
 
@@ -112,9 +108,7 @@ class Contract(AsJson):
 
     @property
     def judging(self) -> Contract:
-        """What of it decides on answers: a word of the text may be
-        another, or what a line is worth.
-        """
+        """The part that decides how answers are judged, without the text and the points."""
         variant = self.question.variant and replace(
             self.question.variant, text="", shown={}, picture=None
         )
@@ -136,16 +130,16 @@ class Asked:
     Attributes
     ----------
     contract : Contract
-        By which the answer is judged.
+        The contract by which the answer is judged.
     before : Contract or None
-        By which it was asked, where that is another.
+        The contract by which it was asked, if that was another.
     siblings : tuple of Contract
         All other variants.
     second_chances : mapping of Contract
-        The variants that may make good for help, by the names of the siblings.
+        The variants that can make up for help, by the names of the siblings.
     others : tuple of Asked
-        The variants that the student would have by the source as it stands, or stood, at other
-        times.
+        The variants that the student would have had by the source at other times, or would have
+        now.
     """
 
     contract: Contract

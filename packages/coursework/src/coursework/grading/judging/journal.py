@@ -1,15 +1,15 @@
-"""The journal: all that happened to marks, in lines that are only ever added.
+"""The journal: everything that happened to marks, in a file that only grows.
 
-Each line of ``journal.jsonl`` is an event, which any editor shows: marks that were `Given`,
-a `Decision` on one answer, a step of an `Appeal`, what a line of a rubric is worth
-from now on (`Worth`), or marks that were `Exported`. The marks of a class are those
-that were given last, and nothing else moves them (`coursework.grading.judging.laboratory`).
+Each line of ``journal.jsonl`` is an event that any editor shows: marks that were `Given`, a
+`Decision` on one answer, a step of an `Appeal`, the new worth of a line of a rubric (`Worth`), or
+marks that were `Exported`. The current marks of a class are those that were given last, and nothing
+else changes them (`coursework.grading.judging.laboratory`).
 
-Of several decisions on the same answer the last one counts, and none is ever removed. Graders take
-back a decision of their own by entering another one that says so, and the decision before it counts
-again. A decision belongs to the answer that the grader saw and to the question as it stood then, so
-an answer that is handed in anew is judged anew. A decision names the decision that counted when the
-grader looked. If another one counts by then, nothing is entered, and both graders are told.
+If there are several decisions on the same answer, the last one counts, and none is ever removed.
+Graders take back a decision of their own by entering another that says so; the decision before it
+then counts again. A decision belongs to the answer that the grader saw and to the question as it
+stood then, so a resubmitted answer is judged again. A decision names the one that counted when the
+grader looked. If another counts by then, we enter nothing and tell both graders.
 """
 
 import contextlib
@@ -33,7 +33,7 @@ from ..submissions.roster import cells_in
 from ..tables import as_written
 
 FILE = "journal.jsonl"
-#: Where the beginning of a line is kept that was being written when the machine stopped.
+#: The file for the beginning of a line that was not yet complete when the machine stopped.
 CUT = "journal.cut"
 LONGEST_WORDS = 4_000
 
@@ -43,7 +43,7 @@ Key = tuple[str, str, str]
 #: A line of a table: its number, and its cells by the names of the columns.
 Row = tuple[int, dict[str, str]]
 
-#: The states of an appeal, in their order; the last two close it.
+#: The states of an appeal, in order; the last two close it.
 RAISED, UNDER_REVIEW, ACCEPTED, REJECTED = "raised", "under review", "accepted", "rejected"
 OPEN = (RAISED, UNDER_REVIEW)
 
@@ -54,7 +54,7 @@ def now() -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Event(AsJson):
-    """What somebody did.
+    """An event: something that somebody did.
 
     Attributes
     ----------
@@ -68,21 +68,20 @@ class Event(AsJson):
 
 @dataclass(frozen=True, kw_only=True)
 class OnAnswer(Event):
-    """What somebody said on one answer.
+    """An event that concerns one answer.
 
     Attributes
     ----------
     student, assignment, question : str
     answer : str
-        The `digest_of_answer` of what was looked at.
+        The `digest_of_answer` of the answer that the person saw.
     contract : str
-        The version of the question by which the answer was judged when it was looked at; empty
-        where nobody knows.
+        The version of the question that the answer was judged by at that time; empty if unknown.
     after : str
-        The event that counted when this one was entered; empty where there was none.
+        The event that counted when this one was entered; empty if there was none.
     appeal : str
-        The first step of the appeal to which this belongs; empty if it is this one, or if there is
-        none.
+        The first step of the appeal to which this belongs; empty for that step itself, or without
+        an appeal.
     """
 
     student: str
@@ -105,17 +104,17 @@ class Decision(OnAnswer):
     Attributes
     ----------
     credit : float or None
-        From 0 to 1; ``None`` takes back the decision ``undoes``.
+        From 0 to 1; ``None`` takes back the decision in ``undoes``.
     comment : str
         For the student.
     rubric : tuple of str
-        The lines that hold of this answer.
+        The lines that apply to this answer.
     why : str
-        For those who grade.
+        The reason, for those who grade.
     undoes : str
-        The decision of the same person that is taken back.
+        The same person's decision that this one takes back.
     points : tuple of float or None
-        What each line of the rubric was worth, where the points are those of the rubric.
+        The worth of each line of the rubric, if the points come from the rubric.
     """
 
     credit: float | None
@@ -128,14 +127,15 @@ class Decision(OnAnswer):
 
 @dataclass(frozen=True, kw_only=True)
 class Appeal(OnAnswer):
-    """A step of an appeal against a mark: it is raised, taken up, or
-    rejected. A `Decision` accepts it.
+    """A step of an appeal against a mark: raised, under review or rejected.
+
+    A `Decision` accepts an appeal.
 
     Attributes
     ----------
     state : str
     words : str
-        The student's where it is raised, and later for the student.
+        The student's words in the first step; later, the answer to the student.
     """
 
     state: str
@@ -144,14 +144,14 @@ class Appeal(OnAnswer):
 
 @dataclass(frozen=True, kw_only=True)
 class Worth(Event):
-    """What a line of a rubric is worth from now on.
+    """A new worth of a line of a rubric.
 
     Attributes
     ----------
     question, line : str
     points : float
     source : float or None
-        What the source said when this was entered: once it says something else, that is newer.
+        The worth in the source when this was entered. If it changes, the source is the newer one.
     after : str
         The event that was in force before.
     """
@@ -165,7 +165,7 @@ class Worth(Event):
 
 @dataclass(frozen=True)
 class Part(AsJson):
-    """What a mark comes to, for one question."""
+    """The points for one question of a mark."""
 
     points: float
     worth: float
@@ -180,7 +180,7 @@ class Given(Event):
     ----------
     student, assignment : str
     why : str
-        What moved them, or that they were given first.
+        The reason for the change, or that this is the first mark.
     points, worth : float
     marks : mapping of str to Part
         By question.
@@ -198,19 +198,19 @@ class Given(Event):
 
     @property
     def undecided(self) -> int:
-        """How many answers wait for a person."""
+        """The number of answers that wait for a person."""
         return sum(part.outcome == "undecided" for part in self.marks.values())
 
 
 @dataclass(frozen=True, kw_only=True)
 class Exported(Event):
-    """Marks that were written into the table of a system.
+    """Marks that were written to a system's table.
 
     Attributes
     ----------
     assignment, column, file : str
     marks : mapping of str to str
-        What was written for each student.
+        The mark written for each student.
     """
 
     assignment: str
@@ -219,18 +219,18 @@ class Exported(Event):
     marks: Mapping[str, str]
 
 
-#: What people said, which another grader's journal may bring.
+#: The events that people enter, which we merge from another grader's journal.
 ByPeople = Decision | Appeal | Worth
 KINDS = {kind.__name__.lower(): kind for kind in (Decision, Appeal, Worth, Given, Exported)}
 
 
 class Collision(ValueError):
-    """Somebody else decided in the meantime: nothing was entered.
+    """An error for a decision that was not entered since somebody else decided in the meantime.
 
     Attributes
     ----------
     decisions : list of Decision
-        What counts now.
+        The decisions that count now.
     """
 
     def __init__(self, message: str, decisions: Iterable[Decision] = ()) -> None:
@@ -239,7 +239,7 @@ class Collision(ValueError):
 
 
 def digest_of_answer(record: Record, question: str) -> str:
-    """Return a digest of an answer, whatever cell it stands in."""
+    """Return a digest of an answer, independent of the cell that contains it."""
     answer = replace(record.answer(question), cell=None, source=None).as_json()
     return hashlib.sha256(json.dumps(answer, sort_keys=True).encode()).hexdigest()[:16]
 
@@ -257,15 +257,15 @@ def _on(record: Record, question: str) -> dict[str, str]:
 
 
 def case_id(record: Record, question: str) -> str:
-    """Return the ID of an answer in a table, which no spreadsheet changes as it does with names.
+    """Return the ID of an answer in a table, which, unlike a name, no spreadsheet changes.
 
-    Another answer of the same student has another ID.
+    A different answer of the same student has a different ID.
     """
     key = [record.student, record.assignment, question, digest_of_answer(record, question)]
     return hashlib.sha256(json.dumps(key).encode()).hexdigest()[:12]
 
 
-# --- what all events come to --------------------------------------------------------------------
+# --- the current state --------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -275,7 +275,7 @@ class Appealed:
     Attributes
     ----------
     steps : tuple of Appeal
-        In their order; the first one raised it.
+        The steps in order; the first one raised it.
     accepted : Decision or None
         The decision that accepts it, unless it was taken back.
     """
@@ -289,7 +289,7 @@ class Appealed:
 
     @property
     def last(self) -> str:
-        """The event that the next step has to name."""
+        """The event that the next step must name."""
         return self.accepted.id if self.accepted else self.steps[-1].id
 
     @property
@@ -301,7 +301,7 @@ class Appealed:
         return self.state in OPEN
 
     def as_json(self) -> dict[str, str]:
-        """Return what its student is told."""
+        """Return what we show its student."""
         first, last = self.steps[0], self.steps[-1]
         answered = (
             self.accepted.comment if self.accepted else last.words if len(self.steps) > 1 else ""
@@ -316,16 +316,16 @@ class Appealed:
 
 @dataclass(frozen=True)
 class Standing:
-    """What all events come to, at a time.
+    """The result of all events up to a time.
 
     Attributes
     ----------
     decisions : dict
         The decision that counts for each answer, by student, assignment and question.
     appeals : dict
-        The appeals of each answer, in the order in which they were raised.
+        The appeals about each answer, in the order in which they were raised.
     worths : dict
-        What lines are worth, by question and line, where somebody said so beside the source.
+        The worth of lines of rubrics that somebody changed on the page, by question and line.
     given : dict
         The marks that were given last, by student and assignment.
     """
@@ -336,31 +336,31 @@ class Standing:
     given: Mapping[tuple[str, str], Given] = field(default_factory=dict)
 
     def decision(self, record: Record, question: str) -> Decision | None:
-        """Return the decision that counts, unless it is on an answer that was handed in before."""
+        """Return the decision that counts, unless it concerns an answer that was replaced since."""
         decision = self.decisions.get((record.student, record.assignment, question))
         is_on_this = decision and decision.answer == digest_of_answer(record, question)
         return decision if is_on_this else None
 
     def worth(self, question: str, line: str, source: float | None) -> float | None:
-        """Return what a line of a rubric is worth: the newer of the page and the source."""
+        """Return the worth of a rubric's line, from the page or the source, whichever is newer."""
         on_page = self.worths.get((question, line))
         return on_page.points if on_page is not None and on_page.source == source else source
 
     def points(self, decision: Decision, mark: Mark) -> float:
-        """Return the points of a decision: a share of all, or what the rubric's lines give now."""
+        """Return the points of a decision: a share of all, or those of the rubric's lines now."""
         worth = float(mark.worth)
         if decision.points is None:
             return round(worth * (decision.credit or 0), 4)
         points = 0.0
         for line, then in zip(decision.rubric, decision.points, strict=True):
             now = self.worth(decision.question, line, mark.rubric.get(line))
-            # A line that was removed keeps the worth that it had.
+            # A removed line keeps its last worth.
             points += (then if now is None else now) or 0
         return round(min(worth, max(0.0, points)), 4)
 
 
 def with_decisions(record: Record, standing: Standing) -> Record:
-    """Return a record with people's decisions in place of the machine's; nothing is judged."""
+    """Return a record with people's decisions in place of automatic ones; nothing is judged."""
     marks = {}
     for name, mark in record.marks.items():
         judged = standing_mark = mark.judged
@@ -381,7 +381,7 @@ def with_decisions(record: Record, standing: Standing) -> Record:
 
 
 def appeals_open(record: Record) -> list[str]:
-    """The questions of a record against whose marks an appeal is open."""
+    """Return the questions of a record with an open appeal."""
     return [
         name
         for name, mark in record.marks.items()
@@ -397,7 +397,7 @@ class Journal:
     folder : path
         The folder of results.
     dry_run : bool
-        Nothing is written: what is entered counts for this object alone.
+        Write nothing; new events exist in this object only.
     """
 
     def __init__(self, folder: Path, dry_run: bool = False) -> None:
@@ -406,16 +406,16 @@ class Journal:
         self.read()
 
     def read(self) -> None:
-        """Read what was written, also by others, since the last time."""
+        """Read all events, including those that others have written since."""
         self.events = list(events_in(self.path)) if self.path.exists() else []
 
     @property
     def by_people(self) -> list[ByPeople]:
-        """What people said."""
+        """The events that people entered."""
         return [one for one in self.events if isinstance(one, ByPeople)]
 
     def said_of_cut(self) -> str:
-        """What a person should know if the last line was not written to its end; or nothing."""
+        """Return a warning if the last line was not written completely, or an empty string."""
         last = self.path.read_bytes().rpartition(b"\n")[2] if self.path.exists() else b""
         if not last or not _is_cut(last):
             return ""
@@ -425,10 +425,10 @@ class Journal:
             f"moves to {CUT}."
         )
 
-    # -- what they come to
+    # -- reading the state
 
     def standing(self, until: datetime.datetime | None = None) -> Standing:
-        """What counts now, or counted at a time."""
+        """Return the state now, or at a given time."""
         events = [
             one
             for one in self.events
@@ -447,7 +447,8 @@ class Journal:
                 steps.setdefault(one.appeal or one.id, []).append(one)
         appeals: dict[Key, list[Appealed]] = {}
         for first, several in steps.items():
-            # Who takes it up again, or rejects it, after it was accepted, has the last word.
+            # If somebody rejected the appeal, or took it up again, after it was accepted, that
+            # counts.
             by = accepted.get(first)
             if by is not None and any(step.after == by.id for step in several):
                 by = None
@@ -455,12 +456,10 @@ class Journal:
         given = {(one.student, one.assignment): one for one in events if isinstance(one, Given)}
         return Standing(decisions, appeals, worths, given)
 
-    # -- what is entered
+    # -- entering events
 
     def hand_on(self, student: str, assignment: str, name: str) -> None:
-        """Enter all events once more, for another name of the same
-        student: who decided, and when, stays.
-        """
+        """Copy all events to another name of the same student, with their authors and times."""
         old = [
             one
             for one in self.events
@@ -489,9 +488,7 @@ class Journal:
     def decision(
         self, record: Record, question: str, credit: float | None, **more: Any
     ) -> Decision:
-        """A decision on an answer of a record, which is not entered yet; ``more`` are its other
-        fields.
-        """
+        """Make a decision on an answer without entering it; ``more`` are its other fields."""
         if credit is not None and not 0 <= credit <= 1:
             raise ValueError(f"A credit must be a number from 0 to 1, not {credit}.")
         for name in ("rubric", "points"):
@@ -509,12 +506,13 @@ class Journal:
         of: Appealed | None = None,
         **more: Any,
     ) -> Appeal:
-        """Raise an appeal, or take the next step ``of`` one, ``after`` the step that was seen.
+        """Raise an appeal, or take the next step ``of`` one, ``after`` the step that the person
+        saw.
 
         Raises
         ------
         ValueError
-            It says nothing, or this is no step that it can take.
+            The words are missing or too long, or the state is not possible.
         Collision
             Somebody else took a step in the meantime.
         """
@@ -544,15 +542,16 @@ class Journal:
         source: Mapping[str, float],
         who: str | None = None,
     ) -> list[Worth]:
-        """What lines of a rubric are worth from now on, which is not entered yet.
+        """Return new worths for lines of a rubric, without entering them.
 
         Parameters
         ----------
         question : str
         changes : mapping
-            By line: the points, and the event that was in force when somebody looked, or nothing.
+            By line: the points, and the event that was in force when the person looked, or an empty
+            string.
         source : mapping
-            What the source says of each line.
+            The worth of each line in the source.
         """
         who = who or getpass.getuser()
         return [
@@ -568,13 +567,13 @@ class Journal:
         ]
 
     def take_back(self, records: Iterable[Record], question: str, who: str, why: str = "") -> None:
-        """Take back the last decision of a person on each of these answers;
-        what stood before it counts again.
+        """Take back a person's last decision on each of these answers; the one before it counts
+        again.
 
         Raises
         ------
         Collision
-            None of the decisions that stand is this person's.
+            None of the decisions that count is this person's.
         """
         with self._alone() as file:
             standing = _not_taken_back(_in_order(self.by_people))
@@ -596,12 +595,12 @@ class Journal:
             )
 
     def append(self, events: Iterable[Event], collisions: bool = False) -> None:
-        """Write events at the end, all or none; what stands before is never touched.
+        """Append events to the file, all or none.
 
         Raises
         ------
         Collision
-            With ``collisions``, if what counts is another event than the one that each says to come
+            With ``collisions``, if the event that counts is not the one that a new event comes
             ``after``.
         """
         events = list(events)
@@ -644,19 +643,19 @@ class Journal:
 
     @contextlib.contextmanager
     def _alone(self) -> Iterator[io.FileIO]:
-        """Keep other writers away, and know what they have written."""
-        # Without a buffer: what a full disk refused is not written
-        # once more when the file is closed.
+        """Lock out other writers, and read what they have written."""
+        # Use no buffer, so that closing the file does not write again what a full disk refused.
         with open(self.path, "ab+", buffering=0) as file:
             lock(file)
             file.seek(0)
             whole = file.read()
             cut = whole[whole.rfind(b"\n") + 1 :]
             if cut and not _is_cut(cut):
-                file.write(b"\n")  # an editor took it away
+                # An editor removed the line break at the end.
+                file.write(b"\n")
             elif cut:
-                # A line that was being written when the machine stopped:
-                # nobody was told that it counts.
+                # The machine stopped while this line was being written, so nobody was told that it
+                # counts.
                 with open(self.path.with_name(CUT), "ab") as aside:
                     aside.write(cut + b"\n")
                     aside.flush()
@@ -672,18 +671,19 @@ class Journal:
                 lines = lines[file.write(lines) :]
             os.fsync(file.fileno())
         except OSError:
-            file.truncate(whole)  # who is told that it was not written finds nothing of it
+            # Whoever is told that it was not written must not find parts of it.
+            file.truncate(whole)
             raise
         self.events += events
 
     def merge(self, path: Path) -> tuple[list[ByPeople], list[tuple[Decision, Decision]]]:
-        """Take in what people said in another grader's journal.
+        """Merge the events that people entered in another grader's journal.
 
         Returns
         -------
         new : list
         differing : list of (Decision, Decision)
-            Where both decided on one answer and not the same: the later one counts.
+            Different decisions of two people on one answer; the later one counts.
         """
         known = {one.id for one in self.events}
         before = self.standing().decisions
@@ -704,27 +704,27 @@ class Journal:
     def take_in_table(
         self, path: Path, records: Iterable[Record], who: str | None = None
     ) -> tuple[int, list[str]]:
-        """Enter the decisions, or the appeals, of a table that a person filled in.
+        """Enter the decisions or appeals of a table that a person filled in.
 
         Parameters
         ----------
         path : path
             A copy of ``undecided.csv``, with the column ``credit`` filled in, or the table of a
-            sitting, with the column ``tick``: each line is bound to the answer that it was written
+            sitting, with the column ``tick``. Each row belongs to the answer that it was written
             for. Or a table of appeals, with the columns ``student``, ``question`` and ``words``.
         records : iterable of Record
 
         Returns
         -------
         int
-            How many lines were entered.
+            The number of rows that were entered.
         list of str
-            The lines that were not, and why.
+            The rows that were not, and why.
 
         Raises
         ------
         ValueError
-            The table cannot be read; nothing is entered then.
+            The table cannot be read; nothing is entered.
         """
         (header, rows), who = _table(path), who or getpass.getuser()
         if {"id", "version", "credit"} <= header:
@@ -750,7 +750,7 @@ class Journal:
             f"from {path.name}",
         )
         for number, row in rows:
-            # The cell of a box says its share of the points, and then its words.
+            # The cell of a box contains its share of the points, then its words.
             share, _, words = row.get(row.get("tick", "").casefold() or "-", "").partition(": ")
             credit = _credit(
                 (row["credit"] or share or row.get("tick", "")), f"{path}, line {number}"
@@ -816,9 +816,9 @@ class Journal:
 
 
 def _in_order(events: Iterable[ByPeople]) -> list[ByPeople]:
-    """Sort the events of several graders' journals by time, but none before the one it names.
+    """Sort the events of several graders by time, but none before the event that it names.
 
-    Clocks may be wrong: a grader who saw another decision decided later, whatever the times say.
+    Clocks may be wrong. A grader who saw another decision decided later, whatever the times say.
     """
     events = list(events)
     by_id = {one.id: one for one in events}
@@ -856,13 +856,12 @@ def _not_taken_back(made: Sequence[ByPeople]) -> dict[Key, list[Decision]]:
 
 
 def events_in(path: Path) -> Iterator[Event]:
-    """The events of a journal, but for a last line that was not written to its
-    end: nobody was told that it counts.
+    """Iterate over the events of a journal, without a last line that was not written completely.
 
     Raises
     ------
     ValueError
-        A line is none, or was changed; the message says which.
+        A line is not an event, or was changed; the message gives the line.
     """
     with open(path, encoding="utf8", errors="replace") as file:
         for number, line in enumerate(file, 1):
@@ -880,7 +879,7 @@ def events_in(path: Path) -> Iterator[Event]:
 
 
 def _is_cut(line: bytes) -> bool:
-    """Whether a last line, without the end of a line, is no whole event."""
+    """Check whether a last line without a line break is an incomplete event."""
     try:
         _event(line.decode("utf8", "replace"))
     except ValueError:
@@ -895,17 +894,17 @@ def _line(one: Event) -> bytes:
 
 
 def _sum(said: Mapping[str, Json]) -> str:
-    """What tells that a line was changed by hand."""
+    """Return a checksum, which shows whether a line was changed by hand."""
     return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:12]
 
 
 def _event(line: str) -> Event:
-    """What a line says.
+    """Return the event that a line contains.
 
     Raises
     ------
     ValueError
-        It is none; the message says why.
+        It does not contain one; the message gives the reason.
     """
     about = Fields(json.loads(line), "the line")
     if about.get("sum", text) != _sum(about.beside(["sum"])):

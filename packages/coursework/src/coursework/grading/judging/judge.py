@@ -1,9 +1,8 @@
-"""The judge, in a process of its own: an answer that takes it too long, or too
-much memory, costs nobody else a mark.
+"""The judge, in its own process: an answer that takes too long, or too much memory, harms no other.
 
-What is judged is plain data, and working it out is bounded (`coursework.checking.evaluate`).
-This is for what nobody thought of: an answer under which the process ends is undecided and named,
-and another process goes on with the next one.
+Answers are plain data, and evaluating them is bounded (`coursework.checking.evaluate`). This is for
+the cases that nobody thought of. If the process ends while judging an answer, we report that answer
+as undecided, and a new process continues with the next.
 """
 
 import ctypes
@@ -28,17 +27,17 @@ from . import marking
 from .cases import Contracts
 from .contract import Contract
 
-#: Processor time for one question of one student, of which an honest answer takes some thousandths.
+#: Seconds of processor time for one question of one student. An honest answer takes milliseconds.
 MOST_SECONDS = 10
-#: What the process may take beyond what it began with.
+#: Bytes that the process may take in addition to what it begins with.
 MOST_MEMORY = 1 << 30
-#: Nothing was heard of it for so long, on however busy a machine: then it is ended.
+#: Seconds without a message, on a machine however busy, after which we end the process.
 LONGEST_SILENCE = 60 * MOST_SECONDS
 PR_SET_PDEATHSIG = 1
 
 
 class Judge:
-    """Judges records, in a process that is begun when there is something to judge.
+    """A judge of records. Its process starts when there is something to judge.
 
     Parameters
     ----------
@@ -46,7 +45,7 @@ class Judge:
         The questions of each assignment, by its name.
     contracts : Contracts
     log : function
-        Hears of each answer that could not be judged.
+        Receives a line about each answer that could not be judged.
     """
 
     def __init__(
@@ -71,15 +70,15 @@ class Judge:
         self.end()
 
     def marks(self, record: Record) -> dict[str, Mark]:
-        """The marks of a record, by the names of its questions.
+        """Return the marks of a record, by the names of its questions.
 
         Raises
         ------
         ValueError
-            What was asked is kept nowhere.
+            A question's variant was removed, and no copy of it is stored.
         """
         if self.of != os.getpid():
-            # A copy of the process has a judge of its own.
+            # A forked copy of this process needs a judge of its own.
             self.process, self.of = (None, os.getpid())
         found: dict[str, Mark] = {}
         while True:
@@ -133,7 +132,7 @@ class Judge:
         return number, asks, heard
 
     def end(self) -> None:
-        """End the process, if there is one and it is this one's."""
+        """End the process, if there is one and this process started it."""
         if self.process is not None and self.of == os.getpid():
             number, asks, heard = self.process
             os.close(asks)
@@ -151,7 +150,7 @@ class Judge:
         return _read(self.process[2], time.monotonic() + LONGEST_SILENCE)
 
     def _judge(self, hears: int, says: int, asking: int) -> NoReturn:
-        """What the process does until it is ended."""
+        """Answer requests until the process is ended; this runs in the judge's process."""
         try:
             if sys.platform.startswith("linux"):
                 ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
@@ -159,7 +158,7 @@ class Judge:
                 signal.signal(signal.SIGINT, signal.SIG_IGN)
                 signal.signal(signal.SIGTERM, signal.SIG_DFL)
                 first, second = sorted((hears, says))
-                # Nothing that another process waits for to be closed stays open here.
+                # Close everything inherited, since another process may wait for it to be closed.
                 for low, high in (
                     (3, first),
                     (first + 1, second),

@@ -1,11 +1,10 @@
-"""The one door for marks: what would move is said first, who gains
-and who loses, and a person agrees.
+"""The only way to change marks: show first who would gain and who would lose, then ask a person.
 
-A mark is new, or it was given before. New marks are given at once. One that was given moves only
-through `settle`, whatever would move it: work that was handed in again, a question that was
-mended, another worth, a decision, a policy, a newer version of the software. What a mended question
-may do to marks is for its author to choose, as a policy: nobody loses by it, all who had a faulty
-variant have its points, or it counts for nobody.
+New marks are given at once. A mark that was given before changes only through `settle`, whatever
+the cause: resubmitted work, a corrected question, another worth, a decision, a policy or a newer
+version of the software. The author of a corrected question chooses by a policy what it may do to
+marks: nobody loses by it, everybody who had a faulty variant gets its points, or it counts for
+nobody.
 """
 
 import getpass
@@ -19,28 +18,29 @@ from ..tables import in_a_line, number, number_of
 from .journal import Given, Journal, Part
 
 PAGE = "regrade.html"
-#: Instead of the name of a variant: all that the source has no more.
+#: Stands in place of a variant's name for all variants that the source no longer has.
 TAKEN_OUT = "taken-out"
-#: The note of an answer that is to be run again, since it was not asked
-#: for what the question asks for now.
+#: The note of an answer whose notebook must run again, since the question now calls a function
+#: differently.
 RUN_AGAIN = "not called"
-MOST_SHOWN = 40  # moves on the screen; all are in the table and on the page
+# The most changes on the screen. The table and the page have all of them.
+MOST_SHOWN = 40
 
 
 class BadPolicy(ValueError):
-    """A policy is for a question that there is not."""
+    """An error for a policy about a question that does not exist."""
 
 
 @dataclass(frozen=True)
 class Policies:
-    """What mended questions may do to marks.
+    """The policies about what corrected questions may do to marks.
 
     Attributes
     ----------
     never_lower : tuple of str
-        Questions by whose mending nobody loses.
+        Questions whose correction lowers nobody's mark.
     full_credit : tuple of str
-        Questions whose points everybody has; ``"question@variant"`` for one variant of it.
+        Questions that give everybody full points; ``"question@variant"`` for one variant.
     void : tuple of str
         Questions that count for nobody.
     """
@@ -50,7 +50,7 @@ class Policies:
     void: tuple[str, ...] = ()
 
     def demand(self, names: Iterable[str]) -> None:
-        """Refuse a policy for a question that is not asked.
+        """Reject a policy about a question that is not asked.
 
         Raises
         ------
@@ -67,18 +67,18 @@ class Policies:
     def applied(
         self, name: str, mark: Mark, before: Mark | None, case: Case, taken_out: bool
     ) -> Mark:
-        """A mark as the policies have it.
+        """Return a mark after applying the policies.
 
         Parameters
         ----------
         name : str
         mark : Mark
-            What the machine says now.
+            The mark that the machine gives now.
         before : Mark or None
-            What it said before.
+            The mark that it gave before.
         case : Case
         taken_out : bool
-            Whether the source has the variant of this case no more.
+            Whether the source no longer has the variant of this case.
         """
         if name in self.void:
             said = "This question does not count."
@@ -115,7 +115,7 @@ class Policies:
 
 
 class Change(NamedTuple):
-    """What would become of one answer whose mark was given."""
+    """A possible change to one answer's mark."""
 
     student: str
     assignment: str
@@ -130,13 +130,13 @@ class Change(NamedTuple):
 
 
 class Move(NamedTuple):
-    """What would become of the marks of one student's work.
+    """A possible change to the marks of one student's work.
 
     Attributes
     ----------
     student, assignment : str
     before, worth_before, after, worth : float
-        The points, and of how many.
+        The points, and the points that were possible.
     why : str
     changes : list of Change
     """
@@ -152,7 +152,7 @@ class Move(NamedTuple):
 
     @property
     def gain(self) -> float:
-        """The share of the points that is won; below 0, that is lost."""
+        """The share of the points that the student gains; negative for a loss."""
         if self.worth == self.worth_before:
             return self.after - self.before
         before, after = (
@@ -163,7 +163,7 @@ class Move(NamedTuple):
 
     @property
     def run_again(self) -> bool:
-        """Whether something waits to be run, since what is stored does not tell."""
+        """Whether an answer must be run again, since the stored data are not enough to judge it."""
         return any(change.outcome == f"undecided ({RUN_AGAIN})" for change in self.changes)
 
     def __str__(self) -> str:
@@ -179,9 +179,9 @@ class Move(NamedTuple):
 
 
 def move_of(given: Given, record: Record, why: str) -> Move | None:
-    """What a record would move of the marks that were given; ``None`` where it only adds to them.
+    """Return how a record would change the marks given; ``None`` if it only adds to them.
 
-    What waited for a person was not given yet.
+    An answer that waited for a person had no mark yet.
     """
     changes = []
     for name in dict.fromkeys((*given.marks, *record.marks)):
@@ -213,7 +213,7 @@ def move_of(given: Given, record: Record, why: str) -> Move | None:
 
 @dataclass
 class Laboratory:
-    """All that would move, whether a person has agreed, and what was only added to marks."""
+    """All possible changes, whether a person has agreed to them, and what only adds to marks."""
 
     moves: list[Move] = field(default_factory=list)
     added: list[str] = field(default_factory=list)
@@ -233,12 +233,12 @@ class Laboratory:
 
     @property
     def even(self) -> list[Move]:
-        """Those whose share of the points stays the same."""
+        """The changes that leave the share of the points the same."""
         others = (*self.gain, *self.lose, *self.again)
         return [move for move in self.moves if move not in others]
 
     def lines(self) -> list[str]:
-        """What a person should know before saying yes."""
+        """Return what a person should know before agreeing."""
         said = []
         for what, moves in (("gain", self.gain), ("lose", self.lose)):
             if moves:
@@ -257,12 +257,12 @@ class Laboratory:
         return said
 
     def first_decided(self) -> list[str]:
-        """What waited for a person, and was decided: that moves no mark that was given."""
+        """Return the answers that a person decided for the first time. No mark changes."""
         indented = [f"  {line}" for line in self.added]
         return indented and [f"Decided for the first time ({len(self.added)}):", *indented]
 
 
-#: Says whether what a laboratory shows shall come to pass.
+#: A function that returns whether to make the changes that a laboratory shows.
 Agree = Callable[[Laboratory], bool]
 
 
@@ -281,11 +281,12 @@ def settle(
     store : Store
     journal : Journal
     candidates : iterable of Record
-        As they would be; one at a time is held in memory.
+        The records as they would become; only one at a time is held in memory.
     agree : function
-        Hears what would move, and says whether it shall. Asked only where something would.
+        Receives the possible changes and returns whether to make them. Called only if there are
+        any.
     why : str
-        What moves a mark, where it is not work that was handed in again.
+        The reason for a change that is not due to resubmitted work.
     dry_run : bool
         Give nothing.
     """
@@ -314,15 +315,15 @@ def settle(
     for key, was_run_again in moving.items():
         if not laboratory.agreed:
             del pending[key]
-            # What was run is not run once more when somebody agrees later.
+            # Keep a record that was run, so that it need not run again if somebody agrees later.
             if not was_run_again:
                 store.unstage(*key)
     if dry_run:
         for key in pending:
             store.unstage(*key)
         return laboratory
-    # First what was given, then where it is shown: of a crash in between,
-    # the next run knows what was agreed.
+    # Enter the marks in the journal before showing them, so that after a crash in between the next
+    # run knows that they were agreed to.
     journal.append(given for given in pending.values() if given)
     for key in pending:
         store.promote(*key)

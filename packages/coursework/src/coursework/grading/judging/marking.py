@@ -1,9 +1,9 @@
-"""Verdicts: from a student's answers, as plain data, to outcomes and points.
+"""Marking: from a student's answers, as plain data, to outcomes and points.
 
-Only here are right answers held. What is judged came out of the sandbox as JSON and is checked
-again; no code that a student wrote runs in this process, and the verdict is the one that the
-student's own check gives, reached by the same functions. An answer that cannot be decided is put
-aside for a person and never counted as wrong; nothing is earned by default.
+Only this package has the right answers. The sandbox returns answers as JSON, which we check again.
+No student's code runs in this process, and the same functions reach the same verdict as the
+student's own check. We leave an answer that we cannot decide to a person and never count it as
+wrong. By default, nothing earns points.
 """
 
 import contextlib
@@ -43,15 +43,15 @@ from .cases import (
 )
 from .contract import Asked, Contract
 
-#: An exact question is not decided by an answer that is off by less than this: it may be rounded.
+#: An exact question leaves an answer undecided that is off by less than this, since the student may
+#: have rounded it.
 NEARLY = MP.mpf("1.5e-3")
-#: A wrong answer of more nodes is not tried on the other variants of its question: nothing depends
-#: on it but what the student is told, and one that was made to cost time would cost it for each of
-#: them.
+#: We do not try wrong answers with more nodes than this on the other variants. Only the message to
+#: the student depends on it, and an answer made to cost time would cost it for each variant.
 LONGEST_FOR_SIBLINGS = 1_000
-#: Verdicts that are kept for those who hand in the same, at most.
+#: The most verdicts that we remember for students who hand in the same answer.
 MOST_KEPT = 4096
-#: The mark of an answer under which the process that judges ended, but for what the question says.
+#: The mark of an answer on which the judging process ended, without what depends on the question.
 UNJUDGED = Mark(
     "undecided",
     "too much work",
@@ -61,23 +61,22 @@ UNJUDGED = Mark(
 )
 #: A figure in the text of a question, as `coursework.checking.variants.image` writes it.
 PICTURE = re.compile(r'<p><img alt="[^"]*" width="[^"]*" src="[^"]*"></p>')
-#: How a cell ends that a limit ended: what is missing then may have been lost to it.
+#: The outcomes of a cell that a limit stopped. An answer missing after that may be lost to the
+#: limit.
 BY_A_LIMIT = ("timeout", "memory", "disk", "output")
-#: How the sandbox says that reading an answer was cut short, by a
-#: limit and not by the answer's form.
+#: The sandbox's reasons if a limit, not the answer's form, cut short its reading.
 CUT_SHORT = ("It exceeded the time limit.", "It exceeded the memory limit.")
 
 
-# --- what is known of each question -------------------------------------------------------------
+# --- the contracts of all questions -------------------------------------------------------------
 
 
 def questions_of(
     path: str | Path, secret: bytes, edition: str = ""
 ) -> dict[str, tuple[Contract, ...]]:
-    """All that marks need of the questions of a notebook with solutions: the
-    contracts of all variants, by name.
-    """
-    with contextlib.redirect_stdout(io.StringIO()):  # what a solution prints is for its author
+    """Return the contracts of a solution notebook's questions in all their variants, by name."""
+    # What a solution prints is for its author.
+    with contextlib.redirect_stdout(io.StringIO()):
         return _questions_of(path, secret, edition)
 
 
@@ -105,23 +104,23 @@ def of_student(
     earlier: Mapping[str, Sequence[Sequence[Contract]]] | None = None,
     shows: Callable[[str], bool] = lambda text: False,
 ) -> tuple[dict[str, Asked], dict[str, Case]]:
-    """The questions of a student, each in the student's own variant, and the case of each.
+    """Return the questions of a student, each in the student's own variant, and the case of each.
 
     Parameters
     ----------
     questions : dict
-        As `load_questions` gives them.
+        The questions, as `load_questions` returns them.
     identity : str
-        Of the student, as the roster has it: what a notebook says of itself does not count.
+        The student in the roster; the name that the notebook gives does not count.
     record : dict, optional
-        What was graded of the student before: a student's variant stays, whatever became of the
+        The student's earlier record. The student keeps the variant in it, whatever happened to the
         others.
     contracts : Contracts, optional
         The questions as they stood then.
     earlier : mapping, optional
-        As `earlier_variants` gives them.
+        The earlier variants, as `earlier_variants` returns them.
     shows : function, optional
-        Whether the student's notebook shows a text.
+        Returns whether the student's notebook shows a text.
 
     Returns
     -------
@@ -146,9 +145,7 @@ def of_student(
 def with_second_chances(
     questions: Mapping[str, Asked], named: Collection[str] | None = None
 ) -> dict[str, Contract]:
-    """The questions of a student, and their siblings beside them:
-    those that are ``named``, or all.
-    """
+    """Return a student's questions and their siblings: those that are ``named``, or all."""
     chances = {
         sibling: contract
         for one in questions.values()
@@ -159,10 +156,10 @@ def with_second_chances(
 
 
 def contract_of(question: AuthoredQuestion, secret: bytes, text: str = "") -> Contract:
-    """All that marks need of a question, with the version that follows from it.
+    """Return the contract of a question, with its version.
 
-    ``text`` is that in the source: a question with variants holds its own, beside which the
-    figures stay.
+    ``text`` is the question's text in the source. A question with variants has texts of its own, so
+    we take only the figures from it.
     """
     near = {text: Locker().as_json() for text in question.near}
     known = near | {
@@ -184,7 +181,7 @@ def contract_of(question: AuthoredQuestion, secret: bytes, text: str = "") -> Co
         else dict.fromkeys(question.rubric),
         text="\n\n".join(PICTURE.findall(text)) if question.public.variant else text,
     )
-    # As JSON holds it: of what its author wrote as a tuple it makes a list.
+    # Convert it to JSON and back, which turns an author's tuples into lists.
     return Contract.from_json(
         json.loads(json.dumps(contract.as_json())), question.name
     ).with_version()
@@ -200,10 +197,10 @@ def _canonical_of(question: AuthoredQuestion) -> tuple[str, ...] | None:
 def load_questions(
     paths: Iterable[str | Path], results: str | Path, secret: bytes, edition: str = ""
 ) -> dict[str, tuple[Contract, ...]]:
-    """The questions of several notebooks with solutions, by name.
+    """Load the questions of several notebooks with solutions, by name.
 
-    What came of working them out is kept in the folder of results, under a name that follows from
-    the bytes of the notebook and from the versions of the software.
+    We store the processed questions in the folder of results, under a name that depends on the
+    bytes of the notebook and the versions of the software.
     """
     places: dict[Path, Path] = {}
     for path in map(Path, paths):
@@ -221,7 +218,8 @@ def load_questions(
         work_out(missing[0])
     else:
         for module in ("nbformat", "sympy.physics.mechanics", *packages()) if missing else ():
-            importlib.import_module(module)  # once, and not in each process
+            # Import these once, not in each process.
+            importlib.import_module(module)
         number = min(len(missing), processors())
         list(
             side_by_side(
@@ -238,16 +236,14 @@ def load_questions(
     }
 
 
-#: Of each question with variants, all lists of them by which this class was graded.
+#: The file with all sets of variants by which this class was graded, for each question.
 VARIANTS = "variants.json"
 
 
 def earlier_variants(
     questions: Mapping[str, Sequence[Contract]], results: Path
 ) -> dict[str, list[Sequence[Contract]]]:
-    """The variants of questions as they were when this class was graded at other times, where these
-    were others, the last first; those of today are remembered.
-    """
+    """Return earlier sets of variants that differ from today's, newest first; store today's."""
     path, lists = results / VARIANTS, dict[str, tuple[tuple[Contract, ...], ...]]()
     if path.exists():
         read_lists = by_name(many(many(Contract.from_json)))
@@ -258,7 +254,7 @@ def earlier_variants(
         names = list(variants_of(variants))
         others = [those for those in lists.get(name, ()) if list(variants_of(those)) != names]
         if others or len(names) > 1:
-            # Of the same variants the contracts are those of the last time.
+            # Keep the latest contracts of the same set of variants.
             lists[name] = (*others, tuple(variants))
             earlier[name] = list[Sequence[Contract]](others[::-1])
     if lists != before:
@@ -271,10 +267,10 @@ def earlier_variants(
 
 
 def asked_of_sandbox(questions: Mapping[str, Contract]) -> dict[str, dict[str, Json]]:
-    """What the sandbox is told of each question: the answer's name and
-    the calls of a function, no more.
+    """Return what the sandbox needs for each question: the answer's name and the calls of a
+    function.
 
-    Of the secret calls a notebook learns when it has handed in everything else.
+    A notebook receives the secret calls only when it has handed in everything else.
     """
     variables = [contract.variable for contract in questions.values()]
 
@@ -284,20 +280,20 @@ def asked_of_sandbox(questions: Mapping[str, Contract]) -> dict[str, dict[str, J
 
     return {
         name: {
-            # Two questions may call their answers the same, in two notebooks that were joined: then
-            # only the checks tell them apart.
+            # In two notebooks that were joined, two questions may use the same name for their
+            # answers. Then only the checks tell them apart.
             "variable": contract.variable if variables.count(contract.variable) == 1 else None,
             "calls": calls(contract, contract.question.calls),
             "secret calls": calls(contract, contract.secret.calls if contract.secret else ()),
         }
-        # The numbers of the student's own variant, which its notebook may use by name.
+        # Add the numbers of the student's own variant, which the notebook may use by name.
         | ({"given": dict(contract.variant.given)} if contract.variant.given else {})
         for name, contract in questions.items()
     }
 
 
 def was_limited(record: Record) -> bool:
-    """Whether a limit ended one of the cells of a record."""
+    """Check whether a limit stopped one of the cells of a record."""
     return any(
         cell.outcome in BY_A_LIMIT or "SIGKILL" in (cell.error or "")
         for notebook in record.notebooks
@@ -311,7 +307,7 @@ def was_limited(record: Record) -> bool:
 def mark(
     name: str, question: Asked, answer: Answer, finished: bool = True, limited: bool = False
 ) -> Mark:
-    """Judge what the sandbox says of an answer.
+    """Judge an answer that the sandbox returned.
 
     Parameters
     ----------
@@ -319,16 +315,15 @@ def mark(
     question : Asked
     answer : Answer
     finished : bool
-        Whether the notebook came to its end; if not, an answer that is missing may be due to that.
+        Whether the notebook ran to its end; if not, that may be why an answer is missing.
     limited : bool
-        Whether a cell was stopped by a limit: an answer that is missing may be due to that, too.
+        Whether a limit stopped a cell, which may also be why an answer is missing.
 
     Returns
     -------
     Mark
     """
-    # Many hand in the same. What is judged follows from the version of the
-    # question and from these texts alone.
+    # Many students hand in the same answer. The mark depends only on these values.
     before = (question.before or question.contract).version
     of_question = (
         name,
@@ -362,8 +357,8 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
             "did this student have?"
         )
         reply = _undecided(name, "numbers of another edition", said)
-    # Variants share answers: a mistake with these very numbers may be right for other ones, and
-    # the student's own check names the mistake.
+    # Variants share answers. What is a known mistake for these numbers may be right for others, so
+    # here the student's own check names the mistake.
     elif (
         short
         and reply.known is None
@@ -392,9 +387,7 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
 
 
 def _is_right(name: str, question: Asked, answer: Answer) -> bool:
-    """Whether an answer is right for a question. Of most it takes
-    one look to see that they are not.
-    """
+    """Check whether an answer is right for a question; its fingerprint rules most out quickly."""
     with contextlib.suppress(
         ArithmeticError, ValueError, LookupError, TypeError, Blank, Fault, Undecidable
     ):
@@ -408,12 +401,11 @@ def _is_right(name: str, question: Asked, answer: Answer) -> bool:
 
 
 def parts_right(contract: Contract, text: str) -> tuple[int, int, float]:
-    """How many parts of an answer in words are right, of how many, and the
-    share of credit that this earns.
+    """Return how many parts of an answer in words are right, of how many, and the share they earn.
 
-    The parts of an order are its pairs: which of the two comes first. Of the share, what a guess
-    has right on average is taken off, so that guessing earns nothing on average: with m words to
-    choose from, it has 1/m right.
+    The parts of an order are its pairs: which of the two comes first. From the share we subtract
+    what a guess gets right on average, 1/m for m words to choose from, so that guessing earns
+    nothing.
     """
     kind, right = contract.question.kind, contract.partial or ""
     if kind == "order":
@@ -441,15 +433,14 @@ def mark_with_siblings(
     finished: bool = True,
     limited: bool = False,
 ) -> Mark:
-    """The mark of a question, with regard to the help that a student had and
-    to the siblings that were solved.
+    """Return the mark of a question, allowing for help that the student had and siblings solved.
 
     Parameters
     ----------
     answers : mapping
-        Those of the record, by the names of questions and of siblings.
+        The answers of the record, by the names of questions and siblings.
     remembered : mapping
-        That of the record.
+        What the record remembers.
     """
     known = remembered.get(name)
     found = mark(name, question, answers.get(name, MISSING), finished, limited)
@@ -473,11 +464,11 @@ def mark_with_siblings(
 
 
 def _by_a_sibling(contract: Contract, found: Mark, sibling: str) -> Mark:
-    """What a sibling that was solved without help makes of the mark of a question.
+    """Return the mark of a question after its student solved a sibling without help.
 
-    It earns what help cost. Where the question itself was not answered right, whose numbers were
-    solved is anybody's guess, and with each sibling a friend's answer would have one more chance: a
-    person looks.
+    It restores the points that help cost. If the question itself was not answered correctly, we
+    cannot know whose numbers were solved, and each sibling would give a friend's answer one more
+    chance, so a person decides.
     """
     if found.outcome == "correct":
         said = f"You solved `{sibling}` without help, so it counts for this question."
@@ -495,9 +486,7 @@ def _by_a_sibling(contract: Contract, found: Mark, sibling: str) -> Mark:
 def judge(
     name: str, question: Asked, answer: Answer, finished: bool = True, limited: bool = False
 ) -> tuple[Reply, str]:
-    """Give the `coursework.checking.reply.Reply` to an answer,
-    and its fingerprint if it has one.
-    """
+    """Return the `coursework.checking.reply.Reply` to an answer, and its fingerprint if any."""
     state, contract = answer.outcome, question.contract
     if state == "missing":
         if not finished:
@@ -529,7 +518,8 @@ def judge(
     found: list[str] = []
 
     def look_up(text: str) -> Locker | None:
-        if not found:  # what is looked up after that is another reading of the same answer
+        # A later look-up is another reading of the same answer.
+        if not found:
             found.append(text)
         return contract.locker(text)
 
@@ -551,15 +541,17 @@ def judge(
                 "rounded, although the question asks for an exact answer.",
             )
         if reply.outcome == "not attempted":
-            reply.messages = ["Nothing was answered."]  # there is no "yet" any more
+            # The work is handed in, so "yet" would be wrong.
+            reply.messages = ["Nothing was answered."]
         if reply.outcome == "correct" or (reply.note and contract.credit.get(reply.note)):
             reply = _in_secret(name, contract, answer, plain, reply, found[-1])
     except NotPlain as error:
         reply = Reply(name, "invalid", "unreadable", [str(error)])
     except MemoryError:
-        # the process that judges is at its limit, and what else it would judge is not to suffer
+        # The judging process is at its limit, which must not affect other answers.
         raise
-    except Exception as error:  # a fault of ours costs no student a mark
+    # A fault of ours must not cost a student a mark.
+    except Exception as error:
         reply = _undecided(
             name, "not worked out", f"We could not evaluate this answer ({type(error).__name__})."
         )
@@ -567,10 +559,10 @@ def judge(
 
 
 def in_calls_of(question: Asked, plain: Plain) -> Plain | None:
-    """What a function returned, in the order of the calls that a question has now;
-    ``None`` if it was not called so.
+    """Put a function's results in the order of a question's current calls; ``None`` if some are
+    missing.
 
-    What was recorded are the results of the calls of the contract, one after another.
+    The record has the results of the contract's calls, one after another.
     """
     calls = question.contract.question.calls
     called = (question.before or question.contract).question.calls
@@ -594,13 +586,14 @@ def in_calls_of(question: Asked, plain: Plain) -> Plain | None:
 def _in_secret(
     name: str, contract: Contract, answer: Answer, plain: Plain, reply: Reply, text: str
 ) -> Reply:
-    """The reply, if the answer is what it seems to be also where its author could not look."""
+    """Return the reply, once the answer also agrees at the points that students cannot know."""
     place = contract.secret
     if place is None:
         return reply
     right = place.right if reply.outcome == "correct" else place.partly.get(text)
     if right is None:
-        return reply  # a mistaken function: what it would return elsewhere is not known
+        # For a mistaken function, the results elsewhere are unknown.
+        return reply
     if place.calls:
         said = answer.secret or {}
         if "unreadable" in said and said["unreadable"] not in CUT_SHORT:

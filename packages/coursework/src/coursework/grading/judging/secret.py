@@ -1,10 +1,10 @@
-"""Points and calls that no student holds: marks are not decided only where a student can look.
+"""Secret points and calls, so that marks do not depend only on what students can see.
 
-The check that a student has compares answers at points that follow from the question; whoever reads
-them can hand in a parabola through them, or a table of what a friend's function returned. So an
-answer that earns points is compared once more, at points and calls that follow from a secret of the
-instructor's. Right answers agree there in all their forms: they are worked out with 40 digits, and
-told apart far above any rounding.
+The check that a student has compares answers at points that follow from the question. Whoever reads
+them can hand in a parabola through them, or a table of what a friend's function returned. So we
+compare an answer that earns points once more, at points and calls derived from the instructor's
+secret. Right answers agree there in all their forms, since we compute them with 40 digits and the
+threshold is far above any rounding error.
 """
 
 import copy
@@ -29,22 +29,23 @@ from .contract import Elsewhere
 
 FILE = ".grading-secret"
 CALLS = 3
-#: Farther apart than this share of the value, two answers are not the same: no
-#: rounding reaches it, and no guess.
+#: The relative difference above which two answers differ. No rounding error reaches it, and no
+#: guess comes so close.
 APART = MP.mpf("1e-6")
-#: What is within its tolerance where a student looked may be off by so many tolerances elsewhere.
+#: The number of tolerances by which an answer may be off here that was within one where the student
+#: looked.
 SLACK = 4
 ATTEMPTS = 60
 
 
 def secret_beside(folder: str | Path) -> bytes:
-    """The secret of a course, from the file beside its notebooks with
-    solutions; made at the first run.
+    """Return the secret of a course, from the file beside its solutions; create it at the first
+    run.
 
     Raises
     ------
     ValueError
-        It can neither be read nor made.
+        The file can be neither read nor created.
     """
     path = Path(folder) / FILE
     try:
@@ -63,7 +64,7 @@ def secret_beside(folder: str | Path) -> bytes:
 
 
 def secret_of(question: AuthoredQuestion, secret: bytes) -> Elsewhere | None:
-    """What is compared in secret for a question: ``None`` where there is nothing to look up.
+    """Derive the secret comparison of a question; ``None`` if there is nothing to compare.
 
     Parameters
     ----------
@@ -77,7 +78,8 @@ def secret_of(question: AuthoredQuestion, secret: bytes) -> Elsewhere | None:
     public = question.public
     is_function = public.kind == "function"
     if not is_function and (kinds()[public.kind].text or not public.symbols):
-        return None  # a word or a number is the same everywhere
+        # A word or a number is the same everywhere.
+        return None
     known = None
     for attempt in range(ATTEMPTS):
         seed = hmac.digest(secret, f"{question.name} {attempt}".encode(), "sha256").hex()
@@ -86,7 +88,7 @@ def secret_of(question: AuthoredQuestion, secret: bytes) -> Elsewhere | None:
         else:
             found = _of_expression(question, seed)
         if found is not None and is_function and all(call in public.calls for call in found.calls):
-            # Rather calls that no check has made; of a few words there are none.
+            # Prefer calls that no check makes. If the arguments are a few words, there may be none.
             known, found = (known or found, None)
         if found is not None:
             return found
@@ -123,12 +125,12 @@ def _of_function(question: AuthoredQuestion, seed: str) -> Elsewhere | None:
         )
     except (Blank, Fault, Undecidable, NotPlain):
         return None
-    # Not where the right answer itself jumps: there two right functions may differ.
+    # Avoid places where the right answer itself jumps, since two right functions may differ there.
     return Elsewhere(calls=tuple(calls), right=right) if agree(public, right, moved) else None
 
 
 def numbers_of(public: Question, plain: Plain) -> tuple[str, ...]:
-    """The numbers that an answer stands for, as text that JSON keeps exactly enough.
+    """Return the numbers of an answer, as strings with 30 digits.
 
     Raises
     ------
@@ -138,7 +140,7 @@ def numbers_of(public: Question, plain: Plain) -> tuple[str, ...]:
 
 
 def agree(public: Question, numbers: Sequence[str], others: Sequence[str]) -> bool:
-    """Whether two lists of numbers are the same but for rounding."""
+    """Check whether two lists of numbers agree except for rounding."""
     if len(numbers) != len(others):
         return False
     absolute, relative = tolerances(public)
@@ -154,20 +156,20 @@ def agree(public: Question, numbers: Sequence[str], others: Sequence[str]) -> bo
 
 
 def _columns(calls: Iterable[list[Any]]) -> list[list[Any]]:
-    """For each argument the values that it has in the calls."""
+    """Return the values of each argument in the calls."""
     return [list(values) for values in zip(*calls, strict=True)]
 
 
 def _another(values: list[Any], dice: random.Random) -> Any:
-    """A value that is to the question what the given ones are: of their kind, length and range."""
+    """Return another value of the kind, length and range of the given ones."""
     if (
         all(isinstance(value, list) for value in values)
         and len({len(value) for value in values}) == 1
     ):
         return _another_list(values, dice)
     if all(isinstance(value, list) for value in values) and any(values):
-        # The lists differ in length: take the length of one, and draw each
-        # part from the parts of the same form in all lists.
+        # The lists differ in length, so take the length of one, and draw each part from the parts
+        # of the same form in all lists.
         parts = [part for value in values for part in value]
         chosen = dice.choice([value for value in values if value])
         return [
@@ -185,7 +187,7 @@ def _another(values: list[Any], dice: random.Random) -> Any:
 
 
 def _form(value: Any) -> Any:
-    """How a value is built: of lists, numbers and texts."""
+    """Return how a value is built, from lists, numbers and strings."""
     if isinstance(value, list):
         return [_form(part) for part in value]
     return (
@@ -201,7 +203,7 @@ def _another_list(values: list[list[Any]], dice: random.Random) -> list[Any]:
         return _rotation(dice)
     if length in (2, 3, 4) and all(map(_is_unit, values)):
         found = _unit(length, dice)
-        # A quaternion whose scalar is never negative may be asked for so.
+        # A question may ask for quaternions whose scalar is not negative.
         return [abs(found[0]), *found[1:]] if all(value[0] >= 0 for value in values) else found
     found = [_another([value[place] for value in values], dice) for place in range(length)]
     if length > 1 and all(map(_increases, values)) and _increases(sorted(found)):
@@ -210,7 +212,7 @@ def _another_list(values: list[list[Any]], dice: random.Random) -> list[Any]:
 
 
 def _moved(value: Any, dice: random.Random) -> Any:
-    """The same but for the last digits."""
+    """Return the same value except for the last digits."""
     if isinstance(value, list):
         return [_moved(part, dice) for part in value]
     return value * (1 + 1e-9 * dice.uniform(-1, 1)) if isinstance(value, float) else value
@@ -231,7 +233,8 @@ def _is_rotation(rows: Any) -> bool:
         return False
     (a, b, c), (d, e, f), (g, h, i) = rows
     mixed = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
-    return bool(abs(mixed - 1) < 1e-9)  # of three unit vectors only a right-handed triad reaches 1
+    # Of three unit vectors, only a right-handed orthonormal triad reaches 1.
+    return bool(abs(mixed - 1) < 1e-9)
 
 
 def _increases(value: Any) -> bool:

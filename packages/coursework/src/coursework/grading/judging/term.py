@@ -1,8 +1,8 @@
-"""The term: who is in the course, what is due when, and which rules hold for all.
+"""The term: the people in the course, the due dates, and the rules for everybody.
 
-It stands in one file that people read, ``term.toml`` in the folder of marks;
-``coursework term new`` writes it with every choice explained. A time costs points only where a
-system said it: that of a file on a disk is nobody's.
+It is a file for people to read, ``term.toml`` in the folder of marks, which ``coursework term new``
+writes with every choice explained. Lateness costs points only if a system gives the time; the time
+of a file on a disk proves nothing.
 """
 
 import datetime
@@ -28,11 +28,13 @@ from .laboratory import Policies
 FILE = "term.toml"
 Some = TypeVar("Some")
 EXCUSED = "excused"
-#: The state of an assignment for a student whose only file cannot be graded: a person has to look.
+#: The state of an assignment for a student whose only file cannot be graded, until a person has
+#: looked.
 DAMAGED = "damaged"
-#: Which of several attempts counts; never one that answers nothing where another answers something.
+#: Rules for which of several attempts counts. An empty attempt never counts if another has an
+#: answer.
 IN_TIME, LAST = "newest in time", "last"
-#: What tables of systems call the time at which something was handed in.
+#: The names of columns with the time of submission in systems' tables.
 TIMES = (
     "last modified (submission)",
     "timestamp",
@@ -44,43 +46,44 @@ TIMES = (
 DAY = datetime.timedelta(days=1)
 #: The marks of a student's sittings, by assignment and question.
 Sat = Mapping[str, Mapping[str, Mark | Part]]
-#: Until when, or `EXCUSED`; or by how much all time is longer.
+#: The new due date, `EXCUSED`, or the factor by which all time is longer.
 Extension = datetime.datetime | str | float
 
 
 class BadTerm(ValueError):
-    """The file of the term cannot be understood; the message says which line."""
+    """An error for a term's file that cannot be understood; the message gives the line."""
 
 
 class Times(NamedTuple):
-    """Who handed in when, as a system's table says."""
+    """The times at which people handed in, from a system's table."""
 
     roster: Roster
     times: Mapping[str, datetime.datetime]
 
 
-#: What is no more than all of it.
+#: The upper bound of a share.
 SHARE = {"most": 1}
 
 
 @dataclass(frozen=True)
 class Assignment:
-    """What the term says of an assignment.
+    """The rules for one assignment.
 
     Attributes
     ----------
     notebooks : tuple of str
-        Of which it consists.
+        The notebooks of the assignment.
     opens, due : datetime or None
     weight : float
     column : str
-        Of the system's gradebook, or how its name begins.
+        The column of the system's gradebook, or the beginning of its name.
     times : Times or None
     questions : tuple of str
-        Those of a sitting, which are answered on paper.
+        The questions of a sitting, which students answer on paper.
     homework_cap, homework_factor : float or None
-        What homework on the same questions counts once the sitting is marked: at most what the
-        sitting shows plus this share of the points, or this share of what it earned.
+        The limit to homework on the same questions once the sitting is marked: at most the share
+        earned in the sitting plus this share of the points, or this share of what the homework
+        earned.
     """
 
     notebooks: tuple[str, ...] = ()
@@ -95,7 +98,7 @@ class Assignment:
 
     @property
     def says(self) -> str:
-        """What a sitting does to homework on the same questions, in a sentence."""
+        """A sentence about what a sitting does to homework on the same questions."""
         if self.homework_cap is not None:
             return (
                 "Homework on these questions counts for at most the share that a student earns "
@@ -110,7 +113,7 @@ class Assignment:
         return "Homework on these questions counts in full alongside it." * bool(self.questions)
 
     def most(self, mark: Mark | Part, seen: Mark | Part) -> float:
-        """The points that homework on a question counts at most, by what the sitting showed."""
+        """Return the most points that homework on a question counts for, by the sitting's mark."""
         if seen.outcome != "decided" or not seen.worth:
             return mark.points
         if self.homework_cap is not None:
@@ -120,7 +123,7 @@ class Assignment:
 
 @dataclass(frozen=True)
 class Late:
-    """What lateness costs.
+    """The cost of lateness.
 
     Attributes
     ----------
@@ -129,7 +132,7 @@ class Late:
         Shares of the points earned.
     nothing_after_days : float or None
     marked : float or None
-        The share that is lost by what a system marked as late without saying when it came.
+        The share lost by work that a system marked as late without giving a time.
     """
 
     grace_minutes: float = 0
@@ -148,7 +151,7 @@ class Late:
         return bool(self.a_day) or self.nothing_after_days is not None
 
     def penalty(self, late: datetime.timedelta) -> float:
-        """The share of the earned points that a delay costs.
+        """Return the share of the earned points that a delay costs.
 
         >>> from datetime import timedelta
         >>> rules = Late(grace_minutes=15, a_day=0.1, most=0.5, nothing_after_days=7)
@@ -165,7 +168,7 @@ class Late:
 
 @dataclass(frozen=True)
 class Drop:
-    """Of some assignments, or of all, so many do not count."""
+    """A rule by which the lowest marks of some assignments, or of all, do not count."""
 
     lowest: int = 1
     of: tuple[str, ...] = ()
@@ -173,7 +176,7 @@ class Drop:
 
 @dataclass(frozen=True)
 class Term:
-    """What the file says, key by key; without one nothing is due, and nobody is known.
+    """The contents of the file, key by key. Without a file, nothing is due and nobody is known.
 
     Attributes
     ----------
@@ -185,13 +188,13 @@ class Term:
     assignments : mapping of str to Assignment
     drop : tuple of Drop
     groups : mapping of str to tuple of str
-        The members of each.
+        The members of each group.
     extensions : mapping of str to mapping
-        For each student, by assignment, until when, or ``"excused"``; and by how much all ``time``
-        is longer.
+        For each student, the due date by assignment, or ``"excused"``; under ``time``, the factor
+        by which all time is longer.
     regrading : Policies
     gradebook : mapping of str to str
-        What columns of the system's gradebook are called, by their names in English.
+        The columns of the system's gradebook, by their names in English.
     """
 
     name: str = "The course"
@@ -209,7 +212,7 @@ class Term:
     gradebook: Mapping[str, str] = field(default_factory=dict)
 
     def group_of(self, student: str, assignment: str = "") -> str:
-        """The group that a student works in, or the student, who sits alone in a sitting."""
+        """Return a student's group, or the student, who works alone in a sitting."""
         return (
             student
             if assignment in self.sittings
@@ -220,11 +223,11 @@ class Term:
 
     @property
     def sittings(self) -> list[str]:
-        """The assignments that are answered on paper."""
+        """The assignments that students answer on paper."""
         return [name for name, about in self.assignments.items() if about.questions]
 
     def held_back(self, assignment: str, marks: Mapping[str, Mark | Part], sat: Sat) -> float:
-        """The points of an assignment that do not count, by the marks of the student's sittings."""
+        """Return the points that do not count because of the marks of the student's sittings."""
         lost = 0.0
         for question, mark in marks.items() if assignment not in self.sittings else ():
             shown = [(name, seen[question]) for name, seen in sat.items() if question in seen]
@@ -233,13 +236,11 @@ class Term:
         return round(lost, 4)
 
     def members(self, name: str) -> tuple[str, ...]:
-        """The students of a group, or the one student."""
+        """Return the members of a group, or the one student."""
         return self.groups.get(name, (name,))
 
     def due(self, student: str, name: str) -> datetime.datetime | None:
-        """When an assignment is due for a student, or for the
-        member of a group who has most time.
-        """
+        """Return the due date of a student, or of the group's member who has most time."""
         about = self.assignments.get(name, Assignment())
         dues = []
         for member in self.members(student):
@@ -251,7 +252,7 @@ class Term:
                 due = about.due
                 if about.opens is not None and isinstance(longer, (int, float)):
                     more = (due - about.opens) * (longer - 1)
-                    # Adding nothing would choose the first of an hour that a clock shows twice.
+                    # Adding zero would choose the earlier time in an hour that clocks show twice.
                     due = due + more if more else due
                 dues.append(due)
         return max(dues, default=None)
@@ -260,7 +261,7 @@ class Term:
         return self.extensions.get(student, {}).get(name) == EXCUSED
 
     def is_late(self, student: str, name: str, notebook: Notebook) -> bool:
-        """Whether a system says of an attempt that it came late."""
+        """Check whether an attempt was late, by the system's time or its mark."""
         due = self.due(student, name)
         if notebook.handed_in and due:
             when = in_zone(
@@ -270,7 +271,7 @@ class Term:
         return notebook.late
 
     def demand_people(self, path: Path, students: Collection[str]) -> None:
-        """Refuse what is for nobody, such as an extension for a misspelt name.
+        """Reject an entry for somebody unknown, such as an extension for a misspelt name.
 
         Raises
         ------
@@ -285,16 +286,16 @@ class Term:
 
 
 class _File:
-    """The file, and where in it something stands."""
+    """The file, with the positions of its entries."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.text = path.read_text("utf8") if path.exists() else ""
-        #: In which times are meant.
+        #: The time zone of the times in it.
         self.zone: datetime.tzinfo = datetime.UTC
 
     def bad(self, where: str, said: str) -> BadTerm:
-        """An error on what stands at a place, such as ``late.a-day``."""
+        """Return an error about the entry at a place such as ``late.a-day``."""
         section, _, key = where.rpartition(".")
         now, number = "", 0
         for line_number, line in enumerate(self.text.splitlines(), 1):
@@ -309,7 +310,7 @@ class _File:
         return BadTerm(f"{self.path}{f', line {number}' if number else ''}: {said}")
 
     def leaf(self, kind: object, where: str, value: object, most: float) -> object:
-        """A value of the term that is no table and no list."""
+        """Return a value of the term that is neither a table nor a list."""
         if kind in (str, Roster):
             return self.of(str, "a string", where, value)
         if kind is float:
@@ -353,7 +354,7 @@ class _File:
 
 
 def term_of(folder: str | Path) -> Term:
-    """The term of a folder of marks; an empty one if it has no file.
+    """Return the term of a folder of marks; an empty one if it has no file.
 
     Raises
     ------
@@ -428,14 +429,14 @@ NEW_ASSIGNMENT = """
 
 
 def new_term(folder: str | Path, sources: Path, roster: str | None) -> str:
-    """Write the file of a term for the notebooks with solutions that there are; say so.
+    """Write a term's file for the notebooks with solutions, and return a message about it.
 
     Raises
     ------
     BadTerm
-        There is one already.
+        There is a file already.
     """
-    # Only this function needs what makes questions.
+    # Only this function needs the authoring tools.
     from ...authoring.course import course_around
     from ...authoring.source import CHAPTERS
 
@@ -463,7 +464,8 @@ def new_term(folder: str | Path, sources: Path, roster: str | None) -> str:
         first=names[0],
     )
     if roster:
-        Roster(roster)  # or a file that is no roster would leave a term that nobody can use
+        # Read the roster first, so that a bad one does not leave a term that nobody can use.
+        Roster(roster)
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     path.write_text(text, "utf8")
     read_term(path)
@@ -476,7 +478,7 @@ def read_term(path: str | Path) -> Term:
     Raises
     ------
     BadTerm, BadRoster
-        Something in it is misspelt, or is no time, share or name of what it should be.
+        An entry is misspelt, or not the time, share or name that it should be.
     """
     path = Path(path)
     try:
@@ -526,7 +528,8 @@ def read_term(path: str | Path) -> Term:
 
 
 def notebooks_of(name: str, questions: Iterable[str]) -> tuple[str, ...]:
-    """The notebooks of an assignment: those of the questions of a sitting, or the one of its name.
+    """Return the notebooks of an assignment: those of a sitting's questions, or the one of its
+    name.
 
     >>> notebooks_of("quiz", ["levers/see-saw", "levers/plain"]), notebooks_of("levers", ())
     (('levers',), ('levers',))
@@ -580,7 +583,7 @@ def _demand_members(file: _File, term: Term) -> None:
 
 
 def _extended(file: _File, where: str, until: object, term: Term) -> dict[str, Extension]:
-    """What a student's table of extensions says."""
+    """Read a student's table of extensions."""
     table = file.of(dict, "a table", where, until)
     without = [name for name, about in term.assignments.items() if about.due and not about.opens]
     for name, when in table.items():
@@ -606,8 +609,9 @@ def _extended(file: _File, where: str, until: object, term: Term) -> dict[str, E
 def in_zone(
     moment: datetime.datetime, zone: datetime.tzinfo, later: bool = True
 ) -> datetime.datetime:
-    """A moment with its time zone; of an hour that a clock shows twice, or leaves
-    out, the later or the earlier one.
+    """Return a moment with its time zone.
+
+    If clocks show the hour twice or skip it, ``later`` chooses between the two readings.
     """
     if moment.tzinfo:
         return moment
@@ -620,11 +624,11 @@ def in_zone(
 def delay(
     handed_in: datetime.datetime, due: datetime.datetime, zone: datetime.tzinfo
 ) -> datetime.timedelta:
-    """How late something was handed in.
+    """Return how late something was handed in.
 
-    By the time that went by, and by the clocks of the course where these show less: in a night in
-    which they are set back, a day is as long as any other, so that it is the same whether a system
-    says its time in UTC or not.
+    This is the smaller of the elapsed time and the difference between the course's clocks. A day
+    thus counts as one day even in the night in which clocks are set back, and the result is the
+    same whether or not a system gives its time in UTC.
 
     >>> amsterdam = ZoneInfo("Europe/Amsterdam")
     >>> due = datetime.datetime(2026, 10, 24, 23, 59, tzinfo=amsterdam)
@@ -663,30 +667,31 @@ def _times(path: Path, zone: datetime.tzinfo) -> Times:
     return Times(roster, found)
 
 
-# --- what it comes to ---------------------------------------------------------------------------
+# --- the results --------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Result:
-    """What one assignment comes to for one student.
+    """The result of one assignment for one student.
 
     Attributes
     ----------
     assignment : str
     state : str
-        ``counted``, ``dropped``, ``excused``, ``missing`` (counted as nothing), ``damaged`` (left
-        out until a person has looked) or ``not due``.
+        ``counted``, ``dropped``, ``excused``, ``missing`` (counted as zero), ``damaged`` (left out
+        until a person has looked) or ``not due``.
     points, worth : float
         As graded.
     due, handed_in : datetime or None
     late : bool
-        Whether it was late, or its system said so without saying when.
+        Whether it was late, or the system said so without giving a time.
     penalty : float
         The share of the points that lateness cost.
     undecided : int
-        How many answers wait for a person.
+        The number of answers that wait for a person.
     held_back : float
-        The points that do not count, since a sitting on the same questions showed less.
+        The points that do not count, since the student did worse on the same questions in a
+        sitting.
     """
 
     assignment: str
@@ -718,8 +723,7 @@ def results_of(
     now: datetime.datetime,
     refused: Collection[str] = (),
 ) -> tuple[list[Result], float | None]:
-    """What each assignment of the term comes to for a student, and the
-    share of everything that counts.
+    """Return a student's results in all assignments of the term, and the total share.
 
     Parameters
     ----------
@@ -728,9 +732,9 @@ def results_of(
         The student's records, by assignment.
     term : Term
     worth : dict
-        What each assignment is worth; for those that were not handed in.
+        The points of each assignment, for those that were not handed in.
     now : datetime
-        What is due later and was not handed in is not counted yet.
+        Missing work that is due after this does not count yet.
     refused : collection of str
         The students, or groups, who handed in files that cannot be graded.
 
@@ -762,10 +766,10 @@ def result_of(
     sat: Sat | None = None,
     refused: Collection[str] = (),
 ) -> Result:
-    """What one assignment comes to for a student, by the marks of the student's sittings.
+    """Return a student's result in one assignment, given the marks of the student's sittings.
 
-    A student who is in ``refused`` and has no record handed in nothing but what cannot be graded.
-    Of which assignment the file was, nobody knows, so that every one that is missing is open.
+    A student in ``refused`` without a record handed in only files that cannot be graded. We do not
+    know which assignment the file was for, so every missing one stays open.
     """
     about, group = term.assignments.get(name, Assignment()), term.group_of(student, name)
     due = term.due(group, name)
@@ -802,7 +806,7 @@ def result_of(
 
 
 def unknown_times(results: Iterable[Result], term: Term) -> list[str]:
-    """What a person should know where nobody knows when something was handed in.
+    """Return warnings about work that came in at an unknown time.
 
     Raises
     ------
@@ -829,7 +833,7 @@ def unknown_times(results: Iterable[Result], term: Term) -> list[str]:
 def _handed_in(
     student: str, record: Record, about: Assignment, zone: datetime.tzinfo
 ) -> datetime.datetime | None:
-    """The latest time that a system says of the notebooks that count."""
+    """Return the latest time that a system gives for the notebooks that count."""
     if about.times:
         called = record.identity.called
         keys = [
@@ -859,11 +863,11 @@ def _mean(results: Iterable[Result], term: Term) -> float | None:
 
 
 def _dropped(results: Iterable[Result], term: Term) -> set[str]:
-    """The assignments whose absence is best for the student.
+    """Return the assignments whose absence is best for the student.
 
-    With weights these need not be those of the lowest shares: against the mean m that is reached,
-    an assignment contributes weight (share - m), and the least of these are left out, until m does
-    not change (Dinkelbach 1967).
+    With weights, these need not be those with the lowest shares. Relative to the mean m, an
+    assignment contributes weight (share - m). We drop the smallest of these contributions and
+    repeat until m no longer changes (Dinkelbach 1967).
     """
     counted = {one.assignment: one for one in results if one.state in ("counted", "missing")}
 
@@ -880,7 +884,7 @@ def _dropped(results: Iterable[Result], term: Term) -> set[str]:
                 for name in rule.of
                 if name in counted
             )
-            # Of few that count so far, one is always kept.
+            # If only a few count so far, keep at least one.
             worst.update(name for _, name in mine[: min(rule.lowest, max(0, len(mine) - 1))])
         again = mean_without(worst)
         if left_out is not None and (again is None or again <= mean + 1e-12):

@@ -186,7 +186,7 @@ class Notebook(NamedTuple):
         Raises
         ------
         Unfit
-                It was changed or removed since we first read it.
+            It was changed or removed since we first read it.
         """
         return read_notebook(_unchanged(self))[0]
 
