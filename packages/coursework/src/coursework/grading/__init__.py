@@ -1,3 +1,1 @@
-"""Safe grading: students' notebooks in, their answers out as plain
-data, marks and reports from those.
-"""
+"""Safe grading: from students' notebooks to answers as plain data, and from those to marks."""

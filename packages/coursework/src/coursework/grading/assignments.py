@@ -23,27 +23,27 @@ Questions = Mapping[str, Sequence[Contract]]
 
 
 class NothingToGrade(ValueError):
-    """There is nothing that could be graded; the message says what was looked for."""
+    """An error if there is nothing to grade; the message says what we looked for."""
 
 
 class Course:
-    """The assignments, and the names of the questions of each.
+    """The assignments of a course, and the names of their questions.
 
     Parameters
     ----------
     solutions : path
         The folder of the notebooks with solutions.
     term : Term, optional
-        Says of which notebooks each assignment consists; else each notebook is one.
+        Determines the notebooks of each assignment; without it, each notebook is an assignment.
     only : collection of str
-        The assignments that are graded now, if not all.
+        The assignments to grade now, if not all.
 
     Attributes
     ----------
     assignments : dict of str to tuple of str
-        The notebooks of each that is graded now.
+        The notebooks of each assignment that is graded now.
     names : dict of str to list of str
-        The questions of every assignment, first of those that are graded now.
+        The questions of every assignment, first those of the assignments graded now.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class Course:
             raise NothingToGrade(f"There is no notebook with solutions in {folder}.")
         of_term = (term or Term()).assignments
         known = {name: about.notebooks for name, about in of_term.items()}
-        #: The questions of those that are answered on paper: no notebook answers them.
+        #: The questions of sittings, which students answer on paper and not in a notebook.
         self.sittings = {name: one.questions for name, one in of_term.items() if one.questions}
         homework = [name for name in known if name not in self.sittings] or list(self.sources)
         known |= {stem: (stem,) for stem in homework if stem not in known}
@@ -92,8 +92,9 @@ class Course:
         }
 
     def assignments_of(self, notebook: Notebook) -> list[str]:
-        """The assignments that a notebook answers, graded now or not, by the names in its cells, or
-        else by its own name and folder.
+        """Return the assignments that a notebook answers, whether or not they are graded now.
+
+        The names in its cells decide, or else its own name and folder.
         """
         by_cell = {name.replace("/", "-"): name for name in self.all_questions}
         named = {by_cell.get(name.removeprefix("check-"), name) for name in notebook.named}
@@ -102,8 +103,8 @@ class Course:
             for assignment, names in self.names.items()
             if assignment not in self.sittings
         }
-        # The one it names most of; and any other of which it names half:
-        # some work in a single notebook.
+        # Take the assignment that the notebook names most questions of, and any other of which it
+        # names at least half, since some students work in a single notebook.
         first = max(counts, key=lambda name: counts[name])
         if counts[first]:
             return [
@@ -119,8 +120,9 @@ class Course:
         return list(self.assignments) if len(self.assignments) == 1 else []
 
     def questions(self, assignments: Iterable[str], results: Path) -> dict[str, Questions]:
-        """The questions of some assignments, by assignment and name; what came of working them out
-        is kept in the folder of results.
+        """Load the questions of some assignments, by assignment and name.
+
+        The processed questions are stored in the folder of results.
         """
         stems = sorted(
             {stem for assignment in assignments for stem in self.assignments[assignment]}
@@ -136,7 +138,7 @@ class Course:
 
     @property
     def all_questions(self) -> list[str]:
-        """The names of all questions, also of what is not graded now."""
+        """The names of all questions, including those that are not graded now."""
         return [name for names in self.names.values() for name in names]
 
     @functools.cached_property
@@ -151,10 +153,10 @@ class Course:
         return frozenset(cells)
 
     def answers_something(self, notebook: Notebook) -> bool:
-        """Whether a notebook says anything that the exercise did not say."""
+        """Check whether a notebook contains any code that the exercise did not."""
         return not self.blanks.issuperset(_answered(cell["source"]) for cell in notebook.cells)
 
 
 def _answered(source: str) -> str:
-    """What a cell may answer: neither who one is, nor a remark."""
+    """Return the part of a cell that may be an answer, without comments and the student's ID."""
     return intake.bare(re.sub(r"\b(?:me|student)\([^()\n]*\)", "", source))

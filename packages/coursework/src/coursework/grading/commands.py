@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def _moment(text: str) -> datetime.datetime:
-    """A time that a person typed, on the clocks of this machine if it names no zone."""
+    """Read a time that a person typed, by the clocks of this machine if it has no time zone."""
     return datetime.datetime.fromisoformat(text).astimezone()
 
 

@@ -1,10 +1,9 @@
-"""Grades a class in a few steps: what was handed in is read, paired with students and assignments,
-run and judged, recorded as marks, and reported.
+"""Grade a class: read submissions, match them to students, run and judge them, and report.
 
-A record is written as soon as a student's work on an assignment is graded. Its key follows from
-everything that it depends on: the bytes of the notebooks, the questions, the limits, the versions
-of the software. A run that finds a record with the right key leaves it alone, so a run that was
-killed goes on where it was.
+A record is written as soon as a student's work on an assignment is graded. Its key depends on
+everything that influences it: the bytes of the notebooks, the questions, the limits and the
+versions of the software. A run leaves a record with the right key alone, so a run that was killed
+continues where it stopped.
 """
 
 from __future__ import annotations
@@ -46,22 +45,23 @@ from .submissions.intake import Refused
 from .submissions.roster import BadRoster
 from .tables import in_a_line, number_of
 
-#: What moves marks, where it is not work that was handed in anew.
+#: The reasons for changing marks other than resubmitted work.
 REJUDGED = "the questions or the software have changed"
 DECIDED = "a person decided"
-MOST_SHOWN = 40  # names on the screen
+# The most names on the screen.
+MOST_SHOWN = 40
 
 
 class Desk:
-    """A folder of marks that is worked on: the term, what happened until now, and what is asked.
+    """A folder of marks at work: the term, the earlier events, and the questions.
 
     Parameters
     ----------
     store : Store
     show : file, optional
-        Where it says what it does.
+        Receives messages about progress.
     agree : function
-        Hears which marks that were given would move, and says whether they shall.
+        Receives the changes to marks given before, and returns whether to make them.
     """
 
     def __init__(self, store: Store, show: TextIO | None, agree: Agree) -> None:
@@ -92,7 +92,7 @@ class Desk:
     # -- one student's work
 
     def asked(self, work: Work) -> tuple[dict[str, Asked], dict[str, Case]]:
-        """The questions of the student, and the cases; who was graded before has the same."""
+        """Return a student's questions and cases. A student who was graded before keeps them."""
         return marking.of_student(
             self.questions[work.assignment],
             work.numbers,
@@ -103,9 +103,7 @@ class Desk:
         )
 
     def marked(self, record: Record) -> Record:
-        """A record with the verdicts on its answers; what a person
-        decided on an answer stands above them.
-        """
+        """Return a record with the verdicts on its answers, which people's decisions override."""
         questions = self.questions[record.assignment]
         own, cases = marking.of_student(questions, record.student, record, self.contracts)
         for asked in own.values():
@@ -123,7 +121,7 @@ class Desk:
             marks[name] = replace(
                 mark,
                 title=asked.contract.title,
-                # What its lines are worth, where its author said so.
+                # The worth of each line, where the author gave one.
                 rubric={
                     line: one for line, one in asked.contract.rubric.items() if one is not None
                 },
@@ -132,10 +130,10 @@ class Desk:
             cases[name] = replace(case, own=judged)
         return with_decisions(replace(record, cases=cases, marks=marks), self.standing)
 
-    # -- all
+    # -- everybody's work
 
     def settle(self, candidates: Iterable[Record], why: str, dry_run: bool = False) -> Laboratory:
-        """Give marks; a page shows what would move before a person agrees."""
+        """Give marks; a page shows the changes before a person agrees."""
         from .reporting import reports
 
         def agree(laboratory: Laboratory) -> bool:
@@ -148,7 +146,7 @@ class Desk:
         return laboratory
 
     def report(self, course: Course | None = None) -> None:
-        """Make tables and pages of the marks, and say what waits for a person."""
+        """Write tables and pages of the marks, and list what waits for a person."""
         from .reporting import reports
 
         if course:
@@ -161,7 +159,7 @@ class Desk:
 def at_desk(
     out: str | Path, show: TextIO | None, agree: Agree
 ) -> Iterator[tuple[Desk, contextlib.ExitStack]]:
-    """Work on a folder of marks, with nobody else at it."""
+    """Open a folder of marks and lock out other runs."""
     store = Store(out)
     with store.locked(), contextlib.ExitStack() as closing:
         yield Desk(store, show, agree), closing
@@ -180,35 +178,35 @@ def grade(
     show: TextIO | None = None,
     agree: Agree = lambda laboratory: True,
 ) -> dict[str, int]:
-    """Grade what was handed in and write records and reports to the folder ``out``, whose file
-    ``term.toml`` says who is in the course and what there is to hand in.
+    """Grade the submissions and write records and reports to the folder ``out``.
+
+    Its file ``term.toml`` lists the people in the course and the assignments.
 
     Parameters
     ----------
     submissions, out : path
     solutions : path, optional
-        The folder of the notebooks with solutions, beside which the course's secret is kept.
+        The folder of the notebooks with solutions and of the course's secret.
     only : collection of str
         The assignments to grade, if not all.
     student : str, optional
-        The one student who handed all of it in.
+        The one student who handed in everything.
     as_listed : bool
-        Go on although many notebooks say that they are somebody else's.
+        Continue although many notebooks carry another student's ID.
     dry_run : bool
-        Say whose each file is, and how many would be run; run nothing, and leave every record as it
-        is.
+        Show whose each file is, and how many would run; run nothing and change no record.
     running : Running, optional
         How notebooks are run.
     show : file, optional
-        Where it says how far it is.
+        Receives messages about progress.
     agree : function
-        Hears which marks that were given would move, and says whether they shall.
+        Receives the changes to marks given before, and returns whether to make them.
 
     Returns
     -------
     dict
-        How many were ``graded`` now, were graded before (``kept``), and were ``refused``; and
-        how many marks that were given did not move, since nobody agreed (``held``).
+        How many were ``graded`` now, were graded before (``kept``) and were ``refused``; and how
+        many earlier marks did not change since nobody agreed (``held``).
 
     Raises
     ------
@@ -225,7 +223,8 @@ def grade(
             {
                 event.student
                 for event in desk.journal.events
-                # Everybody has a sheet of a sitting: that is no work handed in.
+                # Everybody has a record of a sitting, so it does not show that somebody handed in
+                # work.
                 if isinstance(event, Given) and event.assignment not in desk.term.sittings
             },
             desk.store.folder,
@@ -268,7 +267,7 @@ def _read_and_pair(desk: Desk, course: Course, place: Path, student: str | None)
 
 
 def _is_done(store: Store, one: Work, key: str) -> bool:
-    """Whether it has a record; a notebook that this machine could not run is tried again."""
+    """Check whether the work has a record of notebooks that this machine could run."""
     return any(
         record is not None
         and record.key == key
@@ -278,9 +277,9 @@ def _is_done(store: Store, one: Work, key: str) -> bool:
 
 
 def _run_and_judge(desk: Desk, waiting: Sequence[Work], running: Running) -> None:
-    """Run what waits, and judge it: each record is written at once, and counts for nothing yet."""
+    """Run and judge the waiting work. Each record is written at once but does not count yet."""
     store, progress = desk.store, Progress(len(waiting), desk.show)
-    # What people decided is read once, and not in each process.
+    # Read people's decisions once, not in each process.
     _ = desk.standing
 
     def finish(order: int, results: Sequence[Result]) -> Finished:
@@ -302,7 +301,7 @@ def _run_and_judge(desk: Desk, waiting: Sequence[Work], running: Running) -> Non
 def _candidates(
     desk: Desk, keys: Sequence[tuple[Work, str]], waiting: Sequence[Work]
 ) -> Iterator[Record]:
-    """All records of these assignments, as they would be now."""
+    """Iterate over all records of these assignments, as they would be now."""
     store, run_now = desk.store, {one.key for one in waiting}
     for one, key in keys:
         old, staged = store.read(*one.key), store.staged(*one.key)
@@ -319,7 +318,7 @@ def _candidates(
 
 
 def _keep_refused(store: Store, place: Path, refused: Iterable[Refused]) -> None:
-    """Write down what was refused: of another folder nothing is forgotten."""
+    """Write down the refused files, keeping those of other folders."""
     everywhere = store.said(REFUSED, by_name(many(Refused.from_json))) or {}
     everywhere[str(place.resolve())] = tuple(sorted(refused))
     as_json = {name: [one.as_json() for one in those] for name, those in everywhere.items()}
@@ -327,13 +326,14 @@ def _keep_refused(store: Store, place: Path, refused: Iterable[Refused]) -> None
 
 
 def with_marks_of(old: Record | None, record: Record) -> Record:
-    """A record with the marks that the same answers have: by whose mending nobody is to lose,
-    nobody loses who handed the same answer in again.
+    """Return a record with the marks of the same answers before.
+
+    A never-lower policy thus also covers students who handed in the same answer again.
     """
     same = old.marks.items() if old else ()
     return replace(
         record,
-        # In whatever cell the answers stand.
+        # The cell of an answer does not matter.
         marks={
             name: mark
             for name, mark in same
@@ -343,8 +343,9 @@ def with_marks_of(old: Record | None, record: Record) -> Record:
 
 
 def said_of_people(store: Store, standing: Standing, contracts: Contracts) -> Iterator[str]:
-    """What waits for people beside undecided answers: appeals, and
-    decisions on what has changed since.
+    """Iterate over what waits for people apart from undecided answers.
+
+    These are appeals, and decisions about something that has changed since.
     """
     appeals: list[str] = []
     changed: list[str] = []
@@ -384,19 +385,19 @@ def regrade(
     show: TextIO | None = None,
     agree: Agree = lambda laboratory: True,
 ) -> Laboratory:
-    """Judge the stored answers again, by the questions and people's decisions as they are now.
+    """Judge the stored answers again, by the current questions and people's decisions.
 
     Parameters
     ----------
     out : path
     solutions : path, optional
     dry_run : bool
-        Write what would move into a page and a table, and nothing else.
+        Write the possible changes to a page and a table, and nothing else.
     agree : function
-        Hears which marks would move, and says whether they shall.
+        Receives the changes to marks, and returns whether to make them.
 
-    Nothing is run. A question that was added since has no answers in
-    the records; grade again for that.
+    Nothing is run. The records have no answers to a question that was added since, for which you
+    need to grade again.
     """
     with at_desk(out, show, agree) as (desk, closing):
         names = sorted({record.assignment for record in desk.store.all()})
@@ -414,7 +415,7 @@ def regrade(
 def bring_in_decisions(
     out: str | Path, *, show: TextIO | None = None, agree: Agree = lambda laboratory: True
 ) -> Laboratory:
-    """Bring what people decided into marks and pages; nothing is judged anew."""
+    """Apply people's decisions to marks and pages, without judging anything."""
     with at_desk(out, show, agree) as (desk, _):
         candidates = (with_decisions(record, desk.standing) for record in desk.store.all())
         laboratory = desk.settle(candidates, DECIDED)

@@ -1,6 +1,4 @@
-"""A file that one process at a time has for itself, until it closes it:
-on Linux, on macOS and on Windows.
-"""
+"""A lock on a file for one process at a time, until it closes it, on Linux, macOS and Windows."""
 
 import time
 from typing import IO, Any
@@ -10,18 +8,19 @@ try:
 except ModuleNotFoundError:  # Windows
     import msvcrt
 
-#: Windows locks bytes, and whoever has not locked them cannot read them: one that no file reaches.
+#: Windows locks bytes and denies others reading them, so lock one beyond the end of any file.
 BEYOND = 1 << 40
-PAUSE = 0.05  # seconds between two tries, where the system knows no longer wait
+# Seconds between two attempts; Windows has no longer wait.
+PAUSE = 0.05
 
 
 def lock(file: IO[Any], wait: bool = True) -> None:
-    """Have an open file for oneself until it is closed.
+    """Lock an open file until it is closed.
 
     Raises
     ------
     BlockingIOError
-        Another process has it, and ``wait`` is false.
+        Another process has locked it, and ``wait`` is false.
     """
     if "fcntl" in globals():
         fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))

@@ -1,6 +1,4 @@
-"""Whose each notebook is, for which assignment, and which of several counts: all that is settled,
-and said, before anything is run.
-"""
+"""Match notebooks to students and assignments, and choose which count, before anything runs."""
 
 from __future__ import annotations
 
@@ -22,7 +20,8 @@ from .submissions.roster import Roster
 from .tables import in_a_line, lines, number_of
 
 WHOSE = "whose.csv"
-MOST_SHOWN = 40  # lines of a table on the screen; the whole of it is in a file
+# The most lines of a table on the screen; a file has the whole table.
+MOST_SHOWN = 40
 
 
 class Work(NamedTuple):
@@ -32,13 +31,13 @@ class Work(NamedTuple):
     ----------
     student, assignment : str
     notebooks : list of Notebook
-        Those that count.
+        The notebooks that count.
     superseded : list of Notebook
-        Those that do not.
+        The notebooks that do not.
     why : list of str
-        Why each of these does not.
+        The reason for each of these.
     numbers : str
-        Whose numbers it answers: of a group, those of the member whom it names.
+        The student whose numbers it answers; for a group, the member that the notebook names.
     """
 
     student: str
@@ -54,25 +53,23 @@ class Work(NamedTuple):
 
     @property
     def reply(self) -> str:
-        """How the name of a page begins that goes back to the student: what the
-        system wrote of the newest notebook.
-        """
+        """The beginning of the name of the page for the student: that of the newest notebook."""
         return max((*self.notebooks, *self.superseded), key=by_age).claim.reply
 
 
-#: A notebook that says that it is of somebody else than whose work it is in.
+#: A notebook that carries the ID of somebody else than the student who handed it in.
 Foreign = tuple[Work, Notebook]
 
 
 class HandedIn(NamedTuple):
-    """What was handed in, by student and assignment.
+    """The submissions, by student and assignment.
 
     Attributes
     ----------
     work : list of Work
     refused : list of Refused
     left_alone : Counter
-        How many notebooks are of each assignment that is not graded now.
+        The number of notebooks for each assignment that is not graded now.
     """
 
     work: list[Work]
@@ -88,12 +85,12 @@ def by_age(notebook: Notebook) -> tuple[tuple[int, ...], tuple[int, ...], str]:
 def read(
     submissions: Path, course: Course, term: Term, student: str | None, out: Path
 ) -> tuple[list[Notebook], list[Refused]]:
-    """Read what was handed in.
+    """Read the submissions.
 
     Raises
     ------
     NothingToGrade
-        It is the folder of the course or of results, or there is nothing in it.
+        It is the folder of the course or of results, or it is empty.
     """
     if course.folder.resolve().is_relative_to(submissions.resolve()):
         raise NothingToGrade(
@@ -118,11 +115,11 @@ def read(
 def pair(
     notebooks: Iterable[Notebook], refused: Iterable[Refused], course: Course, term: Term
 ) -> HandedIn:
-    """Sort notebooks by student, or group, and assignment; say of each which counts.
+    """Sort notebooks by student, or group, and assignment, and decide which count.
 
-    Of several notebooks for one assignment that counts which the term says, and another one only
-    for questions that it has not: an assignment may be handed in as several notebooks. What answers
-    nothing never counts where another notebook answers something.
+    If there are several notebooks for one assignment, the term's rule chooses the one that counts.
+    Others count only for questions that it lacks, since an assignment may be handed in as several
+    notebooks. An empty notebook never counts if another has an answer.
     """
     refused, left_alone = list(refused), Counter[str]()
     handed_in: dict[tuple[str, str], list[Notebook]] = {}
@@ -147,7 +144,7 @@ def pair(
 def _work_of(
     student: str, assignment: str, mine: Sequence[Notebook], course: Course, term: Term
 ) -> Work:
-    """The notebooks that count, and the others, each with the reason."""
+    """Return the notebooks that count, and the others, each with the reason."""
     several = len(mine) > 1
     ranks = {
         notebook.file: (
@@ -181,14 +178,15 @@ def _work_of(
     return Work(student, assignment, counting, superseded, why, says[0])
 
 
-# --- what a person is told before anything is run -------------------------------------------------
+# --- messages before anything runs ----------------------------------------------------------------
 
 
 def say(
     handed_in: HandedIn, term: Term, graded: Collection[str], folder: Path, show: TextIO
 ) -> list[Foreign]:
-    """Say whose each file is, how that is known, and which do not count; give the notebooks that
-    say that they are of somebody else. Who was graded before is not missing.
+    """Print whose each file is, how we know, and which do not count; return mismatched notebooks.
+
+    A student in ``graded``, who was graded before, is not reported as missing.
     """
     for name, number in sorted(handed_in.left_alone.items()):
         print(
@@ -277,7 +275,7 @@ def _say_foreign(work: Sequence[Work], show: TextIO) -> list[Foreign]:
     return foreign
 
 
-# --- what is refused before anything is run -------------------------------------------------------
+# --- refusals before anything runs ----------------------------------------------------------------
 
 
 #: Above both limits of mismatched notebooks, suspect the roster, not the notebooks.
@@ -324,17 +322,15 @@ def demand_own_numbers(
     )
 
 
-#: From this share of the answers to questions with variants on, right answers
-#: to other numbers are no accident.
+#: From this share of the answers to questions with variants on, correct answers to other numbers
+#: are no accident.
 MANY_OTHER_NUMBERS = 0.1
 
 
 def say_other_numbers(
     store: Store, work: Sequence[Work], questions: Mapping[str, Questions], show: TextIO
 ) -> None:
-    """Say it where many answers are right for other numbers than those that their
-    authors are believed to have had.
-    """
+    """Warn if many answers are right for numbers other than the students' own."""
     for assignment, asked in questions.items():
         varied = {name for name, variants in asked.items() if len(variants) > 1}
         given = other = 0
@@ -358,8 +354,10 @@ def say_other_numbers(
 
 
 def demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | None) -> None:
-    """Everything from one student is a question, not a result: a folder around it may have been
-    taken for one. And notebooks that lie by themselves have only their own names.
+    """Reject a class in which one student would own everything, or notebooks name the students.
+
+    The folder around everything may have been taken for a student, and loose notebooks have only
+    their own names.
     """
     by_name = [
         (one, notebook)
@@ -391,11 +389,11 @@ def demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | N
 def put_renamed_aside(
     store: Store, handed_in: HandedIn, journal: Journal, dry_run: bool = False
 ) -> Iterator[str]:
-    """Move the record of a student away whose very notebooks are now
-    another's: the folder was renamed.
+    """Set aside records of students whose very notebooks now belong to another, and report each.
 
-    What people decided on the answers is entered for the new name too. A student whose notebook
-    still lies where it lay, but is refused, has no new name: the roster lacks the old one.
+    Their folder was renamed, so people's decisions on the answers are copied to the new name. A
+    student whose notebook is still in its place but refused has no new name: the roster lacks the
+    old one.
     """
     work, refused = handed_in.work, {one.file for one in handed_in.refused}
     present = {(one.student, one.assignment) for one in work}
@@ -416,8 +414,8 @@ def put_renamed_aside(
             owners.setdefault((one.assignment, digests), []).append(one)
     for student, assignment, files in absent:
         fitting = owners.get((assignment, frozenset(digest for _, digest in files)), [])
-        # Of equal notebooks, those that lie where they lay: then a roster has
-        # given the student another name.
+        # Prefer, among equal notebooks, those still in their place: then a roster has renamed the
+        # student.
         there = [
             one
             for one in fitting

@@ -1,8 +1,8 @@
-"""Dataclasses as JSON, and back, or from a table that people write: readers and a writer that are
-made from the fields themselves.
+"""Conversion of dataclasses to JSON and back, or from tables that people write.
 
-JSON calls a field as Python does, with spaces for underscores; a field that has its default is left
-out. Two fields can therefore never be exchanged by a reader that was written by hand.
+The readers and the writer are derived from the fields, so no hand-written reader can mix up two of
+them. JSON uses a field's name in Python, with spaces for underscores, and leaves out fields that
+have their default.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class AsJson:
 
     @classmethod
     def from_json(cls, value: object, where: str = "") -> Self:
-        """Read what `as_json` wrote; fields that nobody asks for are ignored.
+        """Read what `as_json` wrote, ignoring unknown fields.
 
         Raises
         ------
@@ -51,7 +51,7 @@ class AsJson:
         return cls(**known)
 
     def as_json(self) -> dict[str, Json]:
-        """What `from_json` reads."""
+        """Return the data that `from_json` reads."""
         return {
             _key(field): written(getattr(self, field.name))
             for field, _ in _readers(type(self))  # type: ignore[arg-type]
@@ -74,7 +74,7 @@ def _readers(kind: type) -> list[tuple[Field[Any], Reader[Any]]]:
 
 
 def _reader(kind: Any) -> Reader[Any]:
-    """The reader of a value of a type: plain data is read as it is."""
+    """Return the reader of values of a type; plain data is read as it is."""
     origin, arguments = get_origin(kind), get_args(kind)
     if kind in PLAIN:
         return PLAIN[kind]
@@ -91,12 +91,11 @@ def _reader(kind: Any) -> Reader[Any]:
 
 
 def from_table(file: Any, kind: Any, where: str, value: object, most: float = math.inf) -> Any:
-    """A value that stands at a place of a file that people write, by its type: a table for a
-    dataclass, whose keys are the names of its fields with hyphens.
+    """Read the value at a place of a file that people write, by its type.
 
-    The file reads single values with ``leaf(kind, where, value, most)``, demands a type of JSON by
-    ``of(kind, what, where, value)``, and words by ``unknown(where, name, known)`` what is wrong
-    with a key that there is not.
+    A dataclass is a table, whose keys are the names of its fields with hyphens. The file reads
+    single values with ``leaf(kind, where, value, most)``, checks JSON types with ``of(kind, what,
+    where, value)`` and returns the error for an unknown key with ``unknown(where, name, known)``.
     """
     origin, arguments = get_origin(kind), get_args(kind)
     if is_dataclass(kind):

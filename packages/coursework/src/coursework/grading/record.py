@@ -1,5 +1,6 @@
-"""The record of one student's work on one assignment, as it is stored: what was
-handed in, asked, answered and marked.
+"""The stored record of one student's work on one assignment.
+
+It contains what was handed in, asked, answered and marked.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from .reading import AsJson
 
 @dataclass(frozen=True)
 class Answer(AsJson):
-    """What the sandbox says of an answer.
+    """The sandbox's result for an answer.
 
     Attributes
     ----------
@@ -23,16 +24,16 @@ class Answer(AsJson):
         stopped.
     plain : Plain or None
     why : str or None
-        It is unreadable; or whose paper it is on.
+        Why it is unreadable; or whose paper it is on.
     error : str or None
-        With which reading it was stopped.
+        The error that stopped reading it.
     source : str or None
         ``"check"`` or ``"variable"``.
     cell : int or None
         The number of the cell that gave it.
     secret : mapping or None
-        What a function gave for arguments that no student knows: ``"plain"`` or ``"unreadable"``,
-        and the digest of its ``"calls"``.
+        What a function returned for arguments that no student knows: ``"plain"`` or
+        ``"unreadable"``, and the digest of its ``"calls"``.
     """
 
     outcome: str
@@ -45,7 +46,7 @@ class Answer(AsJson):
 
     @property
     def is_blank(self) -> bool:
-        """Whether what was answered is the blank that the exercise came with."""
+        """Whether the answer is still the blank that the exercise came with."""
         return (
             self.outcome == "recorded"
             and self.plain is not None
@@ -55,17 +56,17 @@ class Answer(AsJson):
 
 @dataclass(frozen=True)
 class Remembered(AsJson):
-    """What the outputs of a notebook remember of the way to an answer.
+    """What the outputs of a notebook remember about the attempts at a question.
 
     Attributes
     ----------
     tries : int
-        How many different answers were tried.
+        The number of different answers that the student tried.
     tried : tuple of str
-        A few digits of each that was wrong.
+        A few digits of each wrong answer's digest.
     help : str
-        The help that was had before it was right, a key of `coursework.checking.reply.HELP`;
-        or nothing.
+        The help that the student had before the right answer, a key of
+        `coursework.checking.reply.HELP`; or empty.
     """
 
     tries: int = 0
@@ -75,9 +76,7 @@ class Remembered(AsJson):
 
 @dataclass(frozen=True)
 class Place(AsJson):
-    """A variant of a question: its name, the version of the question in it that was run, and the
-    one by which it was judged last.
-    """
+    """A variant of a question, with the versions of the question that ran and last judged it."""
 
     variant: str
     contract: str
@@ -86,21 +85,21 @@ class Place(AsJson):
 
 @dataclass(frozen=True)
 class Case(AsJson):
-    """What a student was asked.
+    """The question that a student was asked.
 
     Attributes
     ----------
     question : str
     own : Place
     siblings : mapping of str to Place
-        The other variants that may make good for help, by the names of the siblings.
+        The other variants that can make up for help, by the names of the siblings.
     rule : str
-        How the variant was found: ``"number 3 of 8"``, ``"by name, of 8"``, or empty where there is
+        How the variant was chosen: ``"number 3 of 8"``, ``"by name, of 8"``, or empty if there is
         only one.
     edition : str
-        Of the course: another one draws afresh.
+        The edition of the course; another edition draws the variants anew.
     others : tuple of Place
-        The variants that the student would have had by the source as it stood at other times.
+        The variants that the student would have had by the source at other times.
     """
 
     question: str
@@ -113,7 +112,7 @@ class Case(AsJson):
 
 @dataclass(frozen=True)
 class Judged(AsJson):
-    """What the machine said of an answer, in place of which a person decided."""
+    """The automatic mark that a person's decision replaced."""
 
     outcome: str
     note: str
@@ -131,30 +130,30 @@ class Mark(AsJson):
         ``"correct"``, ``"wrong"``, ``"invalid"``, ``"undecided"``, ``"not attempted"`` or
         ``"decided"``.
     note : str
-        The mistake, or the fault of the form, in a few words; empty where there is none.
+        The mistake, or what is wrong with the form, in a few words; empty if there is none.
     details : mapping
-        What the message of the mistake needed to know.
+        The data for the message about the mistake.
     messages : tuple of str
-        What the student is told.
+        The messages to the student.
     points, worth : float
     group : str
-        What identical answers have in common; empty where an answer has no fingerprint.
+        The same for identical answers; empty if an answer has no fingerprint.
     version : str
-        Of the contract.
+        The version of the contract.
     tries : int or None
-        How many different answers were tried, as the notebook remembers.
+        The number of different answers that the student tried, as the notebook remembers.
     title : str
-        Of the question.
+        The title of the question.
     policy : str or None
-        What its author chose for all who were asked a question that was mended.
+        The author's policy for everybody who was asked a question that was corrected.
     rubric : mapping
-        What its lines are worth, where the author said so.
+        The worth of its lines, where the author gave one.
     before : Judged or None
-        What the machine said, where a person decided.
+        The automatic mark, if a person decided.
     decided : mapping or None
         Who decided, when, and the decision.
     appeals : tuple of mappings
-        As `coursework.grading.judging.journal.Appealed.as_json` tells them.
+        The appeals, as `coursework.grading.judging.journal.Appealed.as_json` returns them.
     """
 
     outcome: str
@@ -175,7 +174,7 @@ class Mark(AsJson):
 
     @property
     def judged(self) -> Mark:
-        """The same as the machine said it, before people did."""
+        """The automatic mark, without people's decisions."""
         alone = replace(self, before=None, decided=None, appeals=())
         return replace(alone, **vars(self.before)) if self.before else alone
 
@@ -191,12 +190,12 @@ class Cell(AsJson):
 
 @dataclass(frozen=True)
 class Isolation(AsJson):
-    """How the code of a notebook was kept apart.
+    """How the code of a notebook was isolated.
 
     Attributes
     ----------
     layers : tuple of str
-        Those in force.
+        The layers in force.
     weak : bool
     not_stopped : tuple of str or None
         What student code could have done.
@@ -212,20 +211,20 @@ class Isolation(AsJson):
 
 @dataclass(frozen=True)
 class RunNotebook(AsJson):
-    """A notebook that was handed in, and what came of running it.
+    """A submitted notebook, with the results of running it.
 
     Attributes
     ----------
     file, sha256 : str
     finished : bool
-        Whether it came to its end.
+        Whether it ran to its end.
     cells : tuple of Cell
     notes : tuple of str
-        What its student is told.
+        Notes for its student.
     beside : tuple of str
-        Files that it was run with.
+        The files that it was run with.
     unknown_questions : tuple of str
-        What it checks, and there is not.
+        Names in its checks that are not questions.
     runs, seed : int
     isolation : Isolation
     late : bool
@@ -248,7 +247,7 @@ class RunNotebook(AsJson):
 
 @dataclass(frozen=True)
 class Superseded(AsJson):
-    """A notebook that does not count, since another one answers the same questions.
+    """A notebook that does not count, since another answers the same questions.
 
     Attributes
     ----------
@@ -263,14 +262,14 @@ class Superseded(AsJson):
 
 @dataclass(frozen=True)
 class Identity(AsJson):
-    """What a student is called, as far as it is known.
+    """The known names and IDs of a student.
 
     Attributes
     ----------
     called : mapping of str to str
-        The number in each system, ``"name"`` and ``"email"``.
+        The ID in each system, ``"name"`` and ``"email"``.
     own : tuple of str or None
-        The course's own words for the student, where there is a roster.
+        The course's own IDs of the student, if there is a roster.
     """
 
     called: Mapping[str, str] = field(default_factory=dict)
@@ -285,20 +284,20 @@ class Record(AsJson):
     ----------
     student, assignment : str
     key : str
-        What follows from everything that running the work depends on.
+        A digest of everything that running the work depends on.
     identity : Identity
     says : tuple of str
-        Whose the notebooks say to be.
+        The students that the notebooks name as their own.
     reply : str or None
-        How the name of a page begins that goes back to the student.
+        The beginning of the name of the page for the student.
     notebooks : tuple of RunNotebook
     superseded : tuple of Superseded
     software, limits : mapping
-        What it was run with.
+        The software and the limits that it was run with.
     finished : bool
-        Whether all notebooks came to their end.
+        Whether all notebooks ran to their end.
     answers : mapping of str to Answer
-        By the names of questions and of siblings.
+        The answers, by the names of questions and siblings.
     remembered : mapping of str to Remembered
     marks : mapping of str to Mark
     cases : mapping of str to Case
@@ -330,7 +329,7 @@ class Record(AsJson):
 
     @property
     def undecided(self) -> int:
-        """How many answers wait for a person."""
+        """The number of answers that wait for a person."""
         return sum(mark.outcome == "undecided" for mark in self.marks.values())
 
     @property
@@ -341,12 +340,12 @@ class Record(AsJson):
         return self.answers.get(question, MISSING)
 
 
-#: What the sandbox says of a notebook, as JSON: a cluster sends it.
+#: The sandbox's result for a notebook, as JSON, so that a cluster can send it.
 Result = dict[str, Json]
 
 
 def read_result(result: Result, file: str) -> tuple[RunNotebook, dict[str, Answer]]:
-    """Read what the sandbox says of a notebook: what came of running it, and the answers.
+    """Read the sandbox's result for a notebook: how it ran, and its answers.
 
     Raises
     ------
@@ -356,5 +355,5 @@ def read_result(result: Result, file: str) -> tuple[RunNotebook, dict[str, Answe
     return ran, Fields(result, file).get("answers", by_name(Answer.from_json))
 
 
-#: An answer of which the sandbox says nothing.
+#: An answer for which the sandbox has no result.
 MISSING = Answer("missing")

@@ -1,10 +1,9 @@
-"""A page to judge in: answer by answer, or all equal answers at once; on this machine only.
+"""A local page to mark in, one answer at a time or all equal answers at once.
 
-It is made from the records, and what is decided goes into the journal
-(`coursework.grading.judging.journal`); nothing is uploaded. Whoever knows the address may
-decide, so it holds a secret, and a request that another page or another name for this machine sent
-is refused. What a student wrote is shown as text and mathematics; a policy forbids the browser to
-run, load or send anything that is in it.
+It shows the records and enters decisions in the journal (`coursework.grading.judging.journal`);
+nothing is uploaded. Whoever knows the address can decide, so it contains a secret, and we refuse
+requests from other pages or under another name of this machine. Students' work appears as text and
+formulas, and a policy forbids the browser to run, load or send anything in it.
 """
 
 import hashlib
@@ -60,12 +59,12 @@ POLICY = (
 HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
-    # with none at all, a browser hides the origin of the own form, too
+    # With no-referrer, browsers hide the origin of our own form, too.
     "Referrer-Policy": "same-origin",
     "Cache-Control": "no-store",
     "Cross-Origin-Resource-Policy": "same-origin",
 }
-#: Which answers a grader may choose to see.
+#: The answers that a grader can choose to see.
 SHOWN = {
     "waiting": "waiting for a person",
     "wrong": "wrong",
@@ -78,13 +77,15 @@ SHOWN = {
     "hints": "with a hint",
     "all": "all",
 }
-MOST_ABOVE = 4  # cells above the one of an answer that are shown first
-#: Code that fewer share is worth a look; code that more share is what everybody writes.
+# The most cells above an answer's own that are shown first.
+MOST_ABOVE = 4
+#: Code shared by a smaller fraction of the class is worth a look; everybody writes more common
+#: code.
 FEW = 0.05
 SHORTEST_CODE = 60
-#: What is shorter is no name that is looked for in what was written.
+#: We do not hide names shorter than this in what students wrote.
 SHORTEST_NAME = 3
-#: What a person may want to look at, by student and question.
+#: Hints for a person, by student and question.
 Hints = defaultdict[tuple[str, str], list[str]]
 
 
@@ -97,7 +98,7 @@ class Cluster(NamedTuple):
     assignment, question : str
     members : list of Record
     hints : list of (str, str)
-        For each student for whom there is one: what a person may want to look at.
+        For each student with a hint: what a person may want to look at.
     """
 
     id: str
@@ -116,7 +117,7 @@ class Cluster(NamedTuple):
 
 
 class Class:
-    """All answers of a class, put together where they are equal.
+    """All answers of a class, grouped where they are equal.
 
     Parameters
     ----------
@@ -147,11 +148,11 @@ class Class:
         for record in self.records:
             for question, mark in record.marks.items():
                 judged = mark.judged
-                # An answer that has a fingerprint is equal to those that share it;
-                # another one to its very copies.
+                # Answers with the same fingerprint are equal; without one, only identical copies
+                # are.
                 same = mark.group or digest_of_answer(record, question)
-                # Equal words to other numbers are another answer: each variant
-                # has a right answer of its own.
+                # Each variant has its own right answer, so the same words to other numbers are
+                # another answer.
                 groups[
                     record.assignment, question, mark.version, judged.outcome, judged.note, same
                 ].append(record)
@@ -166,13 +167,11 @@ class Class:
             self.clusters[name] = Cluster(name, key[0], key[1], members, found)
 
     def contract(self, cluster: Cluster) -> Contract | None:
-        """The question by which the answers of a cluster were judged: these
-        students' own variant; or nothing.
-        """
+        """Return the contract, in the right variant, that judged a cluster, or ``None``."""
         return self.contracts.of(cluster.mark.version)
 
     def without_names(self, text: str) -> str:
-        """A text in which who wrote it, and everybody else in the class, is called by a number."""
+        """Return a text with everybody in the class, including its author, replaced by a number."""
         if not text:
             return text
         said = SAYS.sub(
@@ -184,7 +183,7 @@ class Class:
         return self._known.get(plain_identity(name), "somebody")
 
     def _know_names(self) -> None:
-        """All that students are called, in records and by themselves."""
+        """Collect all names of students, from records and from their notebooks."""
         self._known: dict[str, str] = {}
         parts: dict[str, str] = {}
         for record in self.records:
@@ -198,7 +197,7 @@ class Class:
             for name in names:
                 if len(name) >= SHORTEST_NAME:
                     self._known.setdefault(plain_identity(name), self.aliases[record.student])
-            # A first name alone, written as a name: `mark` is a word, and Mark is somebody.
+            # Include a capitalised first name alone: `mark` is a word, but Mark is a person.
             for part in re.findall(r"\w+", called.get("name", "")):
                 if len(part) >= SHORTEST_NAME and part[0].isupper():
                     parts.setdefault(part, self.aliases[record.student])
@@ -214,19 +213,19 @@ class Class:
             self._known.setdefault(plain_identity(part), alias)
 
     def _shuffled(self) -> list[str]:
-        """The students in an order that follows from their names, and does not tell them."""
+        """Return the students in an order that depends on their names but does not reveal them."""
         students = {record.student for record in self.records}
         return sorted(
             students, key=lambda student: hashlib.sha256(f"alias {student}".encode()).digest()
         )
 
     def read(self) -> None:
-        """Read what was decided in the meantime."""
+        """Read the decisions made in the meantime."""
         self.journal.read()
         self.standing = self.journal.standing()
 
     def outcome(self, cluster: Cluster) -> tuple[str, list[str]]:
-        """What counts for a cluster now, and who decided: decided only if all of it is."""
+        """Return a cluster's current outcome, decided only if all of it is, and who decided."""
         decided = [
             one
             for each in cluster.members
@@ -237,19 +236,19 @@ class Class:
         return cluster.mark.judged.outcome, []
 
     def decision_on(self, cluster: Cluster, record: Record) -> Decision | None:
-        """What was decided last, be it on this answer or on one that was handed in before it."""
+        """Return the last decision on this answer, or on one handed in before it."""
         return self.standing.decisions.get((record.student, cluster.assignment, cluster.question))
 
     def earlier(self, cluster: Cluster, record: Record) -> str:
-        """What has changed since a person decided: ``"answer"``, ``"question"`` or nothing."""
+        """Return what changed since a person decided: ``"answer"``, ``"question"`` or nothing."""
         return changed_since(self.decision_on(cluster, record), record, self.contracts)
 
     def appeals(self, cluster: Cluster, record: Record) -> Sequence[Appealed]:
-        """The appeals against a mark, the first one first."""
+        """Return the appeals against a mark, the oldest first."""
         return self.standing.appeals.get((record.student, cluster.assignment, cluster.question), ())
 
     def waits(self, cluster: Cluster) -> int:
-        """How many of a cluster wait for a person: of an open appeal, too."""
+        """Return how many answers of a cluster wait for a person, including open appeals."""
         undecided = cluster.mark.judged.outcome == "undecided"
         return sum(
             undecided
@@ -276,9 +275,7 @@ class Class:
     def lines(
         self, cluster: Cluster, record: Record
     ) -> list[tuple[str, float | None, float | None, int]]:
-        """The lines of the rubric of a question: what each is worth now, what
-        the source says, how many used it.
-        """
+        """Return a rubric's lines, each with its worth now and in the source, and its use count."""
         source = record.marks[cluster.question].rubric
         found = dict.fromkeys(
             self.questions[cluster.question].rubric if cluster.question in self.questions else ()
@@ -305,7 +302,7 @@ class Class:
         ]
 
     def chosen(self, filters: Mapping[str, str], hide_names: bool = False) -> list[Cluster]:
-        """The clusters that a grader wants to see, the largest of each question first."""
+        """Return the clusters that a grader chose to see, the largest of each question first."""
         text = filters.get("search", "").casefold()
         orders = {name: order for order, name in enumerate(self.questions)}
         found = []
@@ -340,11 +337,10 @@ class Class:
     def cells(
         self, cluster: Cluster, record: Record
     ) -> tuple[Sequence[str], list[int], dict[int, tuple[str, ...]]]:
-        """The code of one student's notebook, which of its cells come first,
-        and the pictures that it keeps.
+        """Return the code of a student's notebook, the cells to show first, and its pictures.
 
-        First come the cell of the answer and those above it, up to the check of another; of several
-        notebooks the one in which it is asked.
+        The first are the cell of the answer and those above it, up to another question's check. Of
+        several notebooks, it is the one in which the question is asked.
         """
         cell = record.answer(cluster.question).cell
         kept = [
@@ -362,16 +358,16 @@ class Class:
         return [], [], {}
 
 
-#: What two may have in common, that is worth a look.
+#: Things that two students may have in common and that are worth a look.
 ANSWER, CODE = "unusual wrong answer", "code, character by character,"
 TRIED = "unusual wrong answers that one other student also tried"
 
 
 def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) -> Hints:
-    """What a person may want to look at, by student and question; never a mark.
+    """Return hints for a person, by student and question, which never affect a mark.
 
-    Equal unusual wrong answers, also among those that were tried on the way, and equal code that
-    few share.
+    They are unusual wrong answers that are equal, including those tried on the way, and equal code
+    that few share.
     """
     hints: Hints = defaultdict(list)
     few = max(2, int(FEW * len({record.student for record in records})))
@@ -399,7 +395,7 @@ def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) ->
             again = f", and {several} such answers in all" if several > 1 and what == ANSWER else ""
             said = f"the same {what} as {len(same) - 1} other{again}"
             if what == TRIED:
-                # One alone may be chance.
+                # One alone may be coincidence.
                 said = f"{several} {what}" if several > 1 else ""
             if said and said not in hints[one, question]:
                 hints[one, question].append(said)
@@ -410,7 +406,7 @@ def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) ->
 
 
 class _Page(web.RequestHandler):
-    """What all pages have in common: who may ask, and what the browser may do."""
+    """The base of all pages, which decides who may ask and what the browser may do."""
 
     def set_default_headers(self) -> None:
         for name, value in HEADERS.items():
@@ -419,7 +415,7 @@ class _Page(web.RequestHandler):
 
     def prepare(self) -> None:
         settings = self.settings
-        # A name that somebody else's server leads here, and a form on somebody else's page.
+        # Reject foreign host names that lead here, and forms on foreign pages.
         if self.request.host not in settings["hosts"]:
             raise web.HTTPError(403, "another host")
         if not hmac.compare_digest(self.path_args[0].encode(), settings["secret"].encode()):
@@ -497,7 +493,7 @@ class _Answer(_Page):
     def show_cluster(
         self, cluster: Cluster, filters: Mapping[str, str], collision: Collision | None = None
     ) -> None:
-        """Show an answer; after a collision with everything that was typed."""
+        """Show an answer; after a collision, with everything that the grader typed."""
         graded, name = self.graded, cluster.id
         graded.read()
         order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
@@ -519,7 +515,7 @@ class _Answer(_Page):
             filters=filters,
             mark=cluster.mark,
             judged=judged,
-            # What an author says stands below, word for word.
+            # The author's own words appear below, verbatim.
             deed=deed(judged)
             if judged.outcome == "wrong" and judged.note not in ("", "authored")
             else "",
@@ -597,16 +593,14 @@ class _Answer(_Page):
                 error = Collision(f"We could not save it: {error.strerror or error}.")
             self.show_cluster(cluster, filters, collision=error)
             return
-        # On to the one that came next, though the list may be shorter now.
+        # Go to the next answer, although the list may be shorter now.
         later = order[order.index(name) + 1 :] if name in order else []
         target = later[0] if later and not stays else name
         query = urlencode({key: value for key, value in filters.items() if value})
         self.redirect(f"/{self.settings['secret']}/answer/{target}?{query}", status=303)
 
     def decide(self, cluster: Cluster, comment: str, why: str) -> bool:
-        """Enter a decision on all of a cluster or one of it, or take it
-        back; say whether to stay at it.
-        """
+        """Enter or take back a decision on a cluster or one answer; return whether to stay."""
         graded, who, said = self.graded, self.settings["grader"], self.get_argument("credit")
         worth, only = cluster.mark.worth, self.get_argument("only", "")
         seen = dict(
@@ -685,7 +679,7 @@ class _Answer(_Page):
         return True
 
     def change_worths(self, cluster: Cluster, comment: str, why: str) -> bool:
-        """Say what lines of the rubric are worth; all that used them is scored anew."""
+        """Change the worth of lines of the rubric, which changes all marks that use them."""
         changes: dict[str, tuple[float, str]] = {}
         now = {line: points for line, points, *_ in self.graded.lines(cluster, cluster.members[0])}
         for line, said, step in zip(
@@ -709,7 +703,7 @@ class _Answer(_Page):
             points = float(said.replace(",", "."))
         except ValueError:
             raise web.HTTPError(400, "no number") from None
-        # A line of a rubric may take points away.
+        # A line of a rubric may deduct points.
         if not (-worth if least is None else least) <= points <= worth:
             raise web.HTTPError(400, "no such credit")
         return points
@@ -722,9 +716,7 @@ class _Answer(_Page):
 def _history(
     events: Iterable[ByPeople], cluster: Cluster, students: Collection[str]
 ) -> list[tuple[str, ...]]:
-    """What was decided on the answers of a cluster, said of them,
-    and said of its rubric, in words.
-    """
+    """Return the history of a cluster's answers and its rubric in words."""
     said: list[tuple[str, ...]] = []
     for one in events:
         if isinstance(one, Worth):
@@ -749,23 +741,21 @@ def _history(
     return said
 
 
-#: The fields of the page in which a person writes.
+#: The fields of the page that a person types into.
 TYPED = ("comment", "why", "words", "new", "new_points", "of")
-#: What the page says in place of a decision where there is none.
+#: Stands on the page in place of a decision that does not exist.
 NONE = "-"
 
 
 def _as_asked(contract: Contract | None) -> str:
-    """The text of a question as these students saw it, with their
-    numbers; its author is trusted.
-    """
+    """Return the text of a question with these students' numbers. We trust its author."""
     if not contract:
         return ""
     return to_page("\n\n".join([contract.text, text_of(contract.variant)]), pages.formula)
 
 
 def _prose(plain: Plain | None) -> str | None:
-    """The words of an answer that is a text; ``None`` if it is something else."""
+    """Return the words of an answer that is a string; ``None`` if it is something else."""
     return str(plain["value"][1]) if plain and plain["value"][0] == "text" else None
 
 
@@ -780,7 +770,7 @@ class _Static(_Page):
 
 
 def application(graded: Class, grader: str, port: int, hide_names: bool = False) -> web.Application:
-    """The pages, as an application of Tornado."""
+    """Return the pages as a Tornado application."""
     secret = secrets.token_urlsafe(24)
     hosts = (f"{ALONE}:{port}", f"localhost:{port}")
     return web.Application(
@@ -806,7 +796,7 @@ def review(
     port: int = 0,
     say: Callable[[str], None] = print,
 ) -> None:
-    """Serve the page until it is stopped; ``say`` hears its address."""
+    """Serve the page until it is stopped; ``say`` receives its address."""
     graded = Class(folder)
     if not graded.records:
         raise ValueError(f"There are no records in {folder}. Grade first.")

@@ -1,4 +1,4 @@
-"""Runs notebooks on this machine or on a cluster, and makes records of what came of it."""
+"""Run notebooks on this machine or on a cluster, and make records of the results."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ from .workers import processors, side_by_side
 if TYPE_CHECKING:
     from .execution.sandbox import Job, Limits
 
-#: Which work was graded, and how it was kept apart, as JSON.
+#: The order of the work that was graded, and its isolation as JSON.
 Finished = tuple[int, dict[str, Json]]
 Finish = Callable[[int, Sequence[Result]], Finished]
-#: The questions of the student whose work it is.
+#: A function that returns the questions of the student whose work it is.
 AskedOf = Callable[[Work], dict[str, Asked]]
 
 
@@ -49,7 +49,7 @@ class Running:
     Attributes
     ----------
     workers : int
-        How many run at a time.
+        The number of notebooks to run at a time.
     scheduler : str or None
         The address of a Dask cluster.
     keys : path or None
@@ -65,7 +65,7 @@ class Running:
     limits: Limits = field(default_factory=_limits)
 
     def demand(self) -> None:
-        """Refuse what cannot be, before anything is read.
+        """Reject impossible settings before anything is read.
 
         Raises
         ------
@@ -82,7 +82,7 @@ class Running:
 
 
 class Jobs:
-    """The jobs of the sandbox, one for each notebook, and which work each belongs to."""
+    """The jobs of the sandbox, one for each notebook, and the work that each belongs to."""
 
     def __init__(self, work: Sequence[Work], asked_of: AskedOf, store: Store) -> None:
         self.work, self.asked_of, self.store = work, asked_of, store
@@ -95,7 +95,7 @@ class Jobs:
             yield from self.of(order)
 
     def of(self, order: int) -> Iterator[Job]:
-        """The jobs of one student's work."""
+        """Iterate over the jobs of one student's work."""
         one = self.work[order]
         named = {name for notebook in one.notebooks for name in notebook.named}
         own = self.asked_of(one)
@@ -113,13 +113,13 @@ class Jobs:
             yield {**job, "files": files} if files else job
 
     def given_up(self, order: int, why: str) -> list[Result]:
-        """The results of work that could not be run."""
+        """Return results for work that could not be run."""
         from .execution.sandbox import given_up
 
         return [given_up(job, why) for job in self.of(order)]
 
     def whole(self, results: Iterable[Result]) -> Iterator[tuple[int, list[Result]]]:
-        """Give the order of each work with the results of its notebooks, once it has them all."""
+        """Iterate over each work's order and the results of its notebooks once all are there."""
         found: dict[int, dict[int, Result]] = {}
         for result in results:
             order, part = map(int, text(result["id"], "'id'").split())
@@ -134,14 +134,12 @@ MARKING_ENDED = "The process that ran and judged it died repeatedly."
 
 
 def run(jobs: Jobs, finish: Finish, running: Running) -> Iterator[Finished]:
-    """Run all jobs, and finish each work whose notebooks were run."""
+    """Run all jobs, and finish each work once its notebooks have run."""
     return on_cluster(jobs, finish, running) if running.scheduler else here(jobs, finish, running)
 
 
 def here(jobs: Jobs, finish: Finish, running: Running) -> Iterator[Finished]:
-    """Run and judge on this machine: each process has a sandbox, and does
-    one student's work after another.
-    """
+    """Run and judge on this machine, in processes that each have a sandbox."""
     from .execution.sandbox import Sandbox, WeakIsolation, WorkerDied, given_up
 
     def prepare(stack: contextlib.ExitStack) -> Callable[[int], Finished]:
@@ -154,7 +152,7 @@ def here(jobs: Jobs, finish: Finish, running: Running) -> Iterator[Finished]:
             try:
                 return sandbox.run(job)
             except WorkerDied as error:
-                # It costs only the notebook under which the sandbox dies again and again.
+                # Give up only the notebook on which the sandbox dies again and again.
                 return given_up(job, str(error))
 
         return lambda order: finish(order, [run_one(job) for job in jobs.of(order)])
@@ -170,7 +168,7 @@ def here(jobs: Jobs, finish: Finish, running: Running) -> Iterator[Finished]:
 
 
 def on_cluster(jobs: Jobs, finish: Finish, running: Running) -> Iterator[Finished]:
-    """Run on a cluster and judge here: right answers do not leave this machine."""
+    """Run on a cluster, but judge here, so that right answers do not leave this machine."""
     from .execution.cluster import run_on_cluster
 
     def prepare(stack: contextlib.ExitStack) -> Callable[[tuple[int, list[Result]]], Finished]:
@@ -178,7 +176,7 @@ def on_cluster(jobs: Jobs, finish: Finish, running: Running) -> Iterator[Finishe
         return lambda task: finish(*task)
 
     def results() -> Iterator[tuple[int, list[Result]]]:
-        # Not before the processes are there, which are to have no part in the connection.
+        # Connect only after forking the processes, which must not share the connection.
         if jobs.work:
             yield from jobs.whole(
                 run_on_cluster(
@@ -197,11 +195,10 @@ def on_cluster(jobs: Jobs, finish: Finish, running: Running) -> Iterator[Finishe
 
 
 def key_of(work: Work, own: Mapping[str, Asked], running: Running) -> str:
-    """What of a record depends on running the work, as one short text;
-    it is judged again without that.
+    """Return a digest of everything that running the work depends on.
 
-    What the sandbox is told of the questions belongs to it: with a call that was
-    mended just those are run again.
+    It includes what the sandbox receives about the questions, so a corrected call runs just the
+    work concerned again. Without a change of it, work is only judged again.
     """
     depends = [
         [
@@ -225,7 +222,7 @@ def key_of(work: Work, own: Mapping[str, Asked], running: Running) -> str:
 def record_of(
     work: Work, results: Sequence[Result], own: Mapping[str, Asked], running: Running
 ) -> Record:
-    """The record of a student's work, before it is judged."""
+    """Return the record of a student's work before it is judged."""
     ran, given = zip(
         *(
             read_result(result, one.file)
@@ -235,7 +232,7 @@ def record_of(
     known = marking.with_second_chances(own)
     answers = {}
     for name in given[0]:
-        # Of several notebooks the one that says something; they have no question in common.
+        # The notebooks have no question in common, so take the one that has an answer.
         answer = min((one[name] for one in given), key=_says_little)
         if answer.secret is not None and (secret := known[name].secret):
             answer = replace(answer, secret={**answer.secret, "calls": secret.digest})
@@ -280,7 +277,7 @@ def _says_little(answer: Answer) -> int:
 
 
 class Progress:
-    """How far it is and how long it will take, on one line that is written over."""
+    """A line that shows progress and the time left, and overwrites itself."""
 
     def __init__(self, total: int, show: TextIO) -> None:
         self.total, self.show, self.done = total, show, 0
@@ -298,8 +295,8 @@ class Progress:
         now = time.monotonic()
         on_screen = self.show.isatty()
         if self.done == 1:
-            # What comes before the first is the start of the sandboxes,
-            # which takes no longer for more.
+            # The time before the first is that of starting the sandboxes, which does not grow with
+            # the number of notebooks.
             self.first = self.last = now
         if self.done == self.total or now - self.last > (0.2 if on_screen else 10):
             self.last = now

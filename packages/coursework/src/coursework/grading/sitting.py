@@ -1,7 +1,7 @@
-"""A sitting: students answer a few questions on paper, each in the student's own variants.
+"""Sittings: each student answers a few questions on paper, in personal variants.
 
-A sitting is an assignment of the term. Its answers are on paper, so all of them wait for a person,
-and what a marker ticks comes back as a decision in the journal, like every other one.
+A sitting is an assignment of the term. Its answers are on paper, so a person marks all of them, and
+a marker's ticks become decisions in the journal like all others.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from .submissions.roster import Roster, cells_in
 from .tables import number, table
 
 FOLDER, TICKS = "sittings", "ticks.csv"
-#: Browsers that print a page without opening a window.
+#: Browsers that can print a page without opening a window.
 BROWSERS = (
     "chromium-headless-shell",
     "chromium",
@@ -48,14 +48,14 @@ BROWSERS = (
     "google-chrome",
     "google-chrome-stable",
 )
-#: More boxes than these nobody reads while marking.
+#: The most boxes that markers can read while marking.
 MOST_BOXES = 8
-#: A row of a formula with more signs than these is wider than half a page.
+#: A row of a formula with more symbols than this is wider than half a page.
 WIDE = 32
 
 
 class Box(NamedTuple):
-    """A box that a marker may tick: its letter, the share of the points, and what it says."""
+    """A box that a marker may tick: its letter, share of the points, and description."""
 
     letter: str
     share: float
@@ -85,13 +85,14 @@ def sitting(
     show: TextIO | None = None,
     agree: Agree = lambda laboratory: True,
 ) -> list[Path]:
-    """Print a sitting for everybody in the course, and return the files: one for students, one for
-    markers, and the table of ticks.
+    """Print a sitting for everybody in the course.
+
+    Return three files: one for students, one for markers, and the table of ticks.
 
     Raises
     ------
     ValueError
-        There is no roster, or no such question, or one that nobody can answer on paper.
+        There is no roster, no such question, or one that nobody can answer on paper.
     """
     with at_desk(out, show, agree) as (desk, closing):
         people = Roster(roster) if roster else desk.term.roster
@@ -117,7 +118,7 @@ def sitting(
 
 
 def _has_entered(desk: Desk, name: str, questions: tuple[str, ...]) -> bool:
-    """Enter a new sitting into the term, and say so; one that the file has is left as it is."""
+    """Add a new sitting to the term unless it has it, and return whether it is new."""
     path, about = desk.store.folder / FILE, desk.term.assignments.get(name)
     if not path.exists():
         raise BadTerm(f"{path} does not exist. Create it with `coursework term new`.")
@@ -138,16 +139,16 @@ def _has_entered(desk: Desk, name: str, questions: tuple[str, ...]) -> bool:
 
 
 def _on_paper(desk: Desk, student: str, name: str, people: Roster) -> Record:
-    """The record of a student's sheet; one that was printed before keeps its variants."""
+    """Return the record of a student's sheet, which keeps the variants of an earlier print."""
     record = desk.store.read(student, name) or Record(student, name)
-    # The sheet names its student, so that no two students' answers are taken for equal.
+    # Name the student, so that no two students' answers count as equal.
     answers = dict.fromkeys(desk.questions[name], Answer("on paper", why=student))
     identity, reply = people.identity(student), f"{file_name(student)}-"
     return replace(record, key=name, identity=identity, reply=reply, answers=answers)
 
 
 def boxes_of(contract: Contract) -> list[Box]:
-    """The right answer, the mistakes that earn something or that the author expects, and others."""
+    """Return boxes for the right answer, mistakes that earn credit or are expected, and others."""
     shares: dict[str, tuple[float, bool]] = {}
     for fingerprint in contract.known:
         locker = contract.locker(fingerprint)
@@ -162,11 +163,11 @@ def boxes_of(contract: Contract) -> list[Box]:
 
 
 def as_formula(plain: Plain | None) -> tuple[Markup, bool]:
-    """An answer as it is typeset, and whether it needs the whole width of the page."""
+    """Return an answer as a typeset formula, and whether it needs the full width of the page."""
     value: Value = plain["value"] if plain else ["blank"]
     parts = parts_of(value) if value[0] == "list" else []
     if plain and parts and all(part[0] == "expression" for part in parts):
-        # One formula for each entry, between which a line may break.
+        # Use one formula for each entry, so that lines can break between them.
         entries = [as_formula({"value": part, "nodes": plain["nodes"]}) for part in parts]
         return Markup("({})").format(Markup(", ").join(formula for formula, _ in entries)), any(
             wide for _, wide in entries
@@ -175,7 +176,7 @@ def as_formula(plain: Plain | None) -> tuple[Markup, bool]:
         texts = [str(part[1]) for part in parts or [value] if part[0] == "text"]
         text = ", ".join(texts) or answer_as_text(plain, LONGEST)
         return Markup("<strong>{}</strong>").format(text), False
-    # What a row shows: the letters of a function, one sign for another command, and no braces.
+    # Estimate the width: the letters of a function, one character for any other command, no braces.
     shown = re.sub(r"\\(?:left|right|(?:begin|end)\{\w+\})|[{}^_&\s]", "", tex)
     rows = re.sub(r"\\(?!sin|cos|tan|\\)[A-Za-z]+", "x", shown).split(r"\\")
     return Markup(pages.formula(tex, LONGEST)), max(map(len, rows)) > WIDE
@@ -183,7 +184,7 @@ def as_formula(plain: Plain | None) -> tuple[Markup, bool]:
 
 def _asked(contract: Contract, figures: str) -> Asked:
     variant = contract.variant
-    # What only a cell of the notebook shows stands in no text.
+    # Add values that only a cell of the notebook shows, since no text contains them.
     only_in_cells = (
         f"`{name} = {value}`"
         for name, value in variant.given.items()
@@ -203,7 +204,7 @@ def _asked(contract: Contract, figures: str) -> Asked:
 
 
 def _decimals(contract: Contract) -> str:
-    """The numbers of an answer in decimals, as students write them on paper; words have none."""
+    """Return an answer's numbers in decimals, as students write them; empty for words."""
     question = contract.question
     if contract.plain is None or question.symbols or question.kind == "measurement":
         return ""
@@ -240,7 +241,7 @@ def _printed(desk: Desk, name: str, records: Sequence[Record], paper: str) -> li
 
 
 def _as_pdf(path: Path) -> Path:
-    """Print a page; where there is no browser, the page itself is left."""
+    """Print a page as a PDF; without a browser, leave the page itself."""
     browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if browser is None:
         return path
@@ -253,7 +254,7 @@ def _as_pdf(path: Path) -> Path:
 
 
 def _table_of_ticks(path: Path, people: Sequence[tuple[Record, list[Asked]]]) -> str:
-    """A line for each answer, with what its boxes say; what was ticked before stays."""
+    """Return a table with a line for each answer and its boxes, keeping earlier ticks."""
     ticked: dict[str, list[str]] = {}
     if path.exists():
         header, lines = cells_in(path)

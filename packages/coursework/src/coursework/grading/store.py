@@ -1,7 +1,7 @@
-"""The folder of results: every file whole or not there at all, and one run at a time.
+"""The folder of results, in which every file is complete, and which one run uses at a time.
 
-``records/student/assignment.json`` is written the moment a student's work is graded and holds all
-that came of it; every other file is made from the records and can be made again.
+``records/student/assignment.json`` is written as soon as a student's work is graded, and contains
+the whole result. Every other file is made from the records and can be made again.
 """
 
 import contextlib
@@ -21,7 +21,7 @@ REFUSED = "refused.json"
 
 
 class InUse(ValueError):
-    """Another run works on the same folder."""
+    """An error because another run uses the same folder."""
 
 
 class Store:
@@ -38,8 +38,8 @@ class Store:
 
     @contextlib.contextmanager
     def locked(self) -> Iterator[None]:
-        """Keep other runs away; what a run that was killed left half done is removed."""
-        # Marks and answers are for nobody else who works on this machine.
+        """Lock out other runs, and remove half-written files of a run that was killed."""
+        # Nobody else on this machine may read marks and answers.
         new = not self.folder.exists()
         self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         with open(self.folder / "lock", "w") as self.lock:
@@ -62,33 +62,31 @@ class Store:
                     self.folder.rmdir()
 
     def in_copy_of_process(self) -> None:
-        """Leave the lock to the process that has it: when that one
-        ends, nobody is kept away any more.
-        """
+        """Release this copy of the lock, so that only the process that took it holds it."""
         self.lock.close()
 
     def place(self, student: str, assignment: str) -> Path:
         return self.records / file_name(student) / f"{file_name(assignment)}.json"
 
     def read(self, student: str, assignment: str) -> Record | None:
-        """A student's record, or ``None``."""
+        """Return a student's record, or ``None``."""
         try:
             return record_in(self.place(student, assignment))
         except FileNotFoundError:
             return None
 
-    # What is not given yet waits in a folder of its own, so that a run that was killed, or to which
-    # nobody said yes, has not run notebooks for nothing.
+    # Records that are not given yet wait in a folder of their own, so that a run that was killed,
+    # or that nobody agreed to, has not run notebooks in vain.
 
     def _staged(self, student: str, assignment: str) -> Path:
         return self.folder / "waiting" / self.place(student, assignment).relative_to(self.records)
 
     def stage(self, record: Record) -> None:
-        """Keep a record of which nobody knows yet whether it shall count."""
+        """Store a record that may not count."""
         write(self._staged(record.student, record.assignment), _as_json(record))
 
     def staged(self, student: str, assignment: str) -> Record | None:
-        """The record that waits, or ``None``."""
+        """Return the waiting record, or ``None``."""
         path = self._staged(student, assignment)
         return record_in(path) if path.exists() else None
 
@@ -96,37 +94,37 @@ class Store:
         self._staged(student, assignment).unlink(missing_ok=True)
 
     def promote(self, student: str, assignment: str) -> None:
-        """Let the record that waits count."""
+        """Let the waiting record count."""
         place = self.place(student, assignment)
         place.parent.mkdir(parents=True, exist_ok=True)
         os.replace(self._staged(student, assignment), place)
 
     def keep_work(self, digest: str, sources: list[str]) -> None:
-        """Keep the code of a notebook, for people to look at beside its answers."""
+        """Store the code of a notebook, for people to see beside its answers."""
         self._keep_beside(f"{digest}.json", sources)
 
     def keep_pictures(self, digest: str, pictures: Mapping[str, list[str]]) -> None:
-        """Keep the pictures of a notebook, by the numbers of their cells, for people to judge."""
+        """Store the pictures of a notebook, by the numbers of their cells, for people to judge."""
         if pictures:
             self._keep_beside(f"{digest}.pictures.json", pictures)
 
     def pictures(self, digest: str) -> dict[int, tuple[str, ...]]:
-        """The pictures of a notebook, by the number of the cell that drew them."""
+        """Return the pictures of a notebook, by the number of the cell that drew them."""
         kept = self.said(f"work/{digest}.pictures.json", by_name(many(text))) or {}
         return {int(number): shown for number, shown in kept.items()}
 
     def work(self, digest: str) -> tuple[str, ...]:
-        """The code cells of a notebook, or nothing if they were not kept."""
+        """Return the code cells of a notebook; empty if they were not stored."""
         return self.said(f"work/{digest}.json", many(text)) or ()
 
     def _keep_beside(self, name: str, value: object) -> None:
-        """Keep for people what nothing that is graded depends on; what is there already stays."""
+        """Store data for people that no grade depends on, unless they are there already."""
         place = self.folder / "work" / name
         if not place.exists():
             write(place, json.dumps(value, ensure_ascii=False), lasting=False)
 
     def said(self, name: str, reader: Reader[Some]) -> Some | None:
-        """What a file of the folder holds, or ``None`` if it is not there.
+        """Return the contents of a file in the folder, or ``None`` if it does not exist.
 
         Raises
         ------
@@ -136,9 +134,7 @@ class Store:
         return reader(json.loads(path.read_text("utf8")), str(path)) if path.exists() else None
 
     def put_aside(self, student: str, assignment: str) -> Path:
-        """Move a record, and the page made of it, to where it
-        counts no more; give its new place.
-        """
+        """Set a record aside, where it no longer counts; delete its page; return its new place."""
         place = self.place(student, assignment)
         aside = self.folder / "put-aside" / place.relative_to(self.records)
         aside.parent.mkdir(parents=True, exist_ok=True)
@@ -148,18 +144,17 @@ class Store:
         return aside
 
     def all(self) -> Iterator[Record]:
-        """All records, by student and assignment, one at a time."""
+        """Iterate over all records, by student and assignment, one at a time."""
         # Keep only folder names, not whole paths, because a class may have a hundred thousand.
         for folder in sorted(os.listdir(self.records) if self.records.is_dir() else ()):
             for path in sorted((self.records / folder).glob("*.json"), key=lambda path: path.name):
                 record = record_in(path)
-                # Not what lies where it would not be written: a copy, or
-                # what another version called so.
+                # Skip a copy, or a file that another version named differently.
                 if path == self.place(record.student, record.assignment):
                     yield record
 
     def log(self, line: str) -> None:
-        """Write a line of what happened, with its time; nothing that is graded depends on it."""
+        """Write a line with the time to the log, which no grade depends on."""
         import datetime
 
         now = datetime.datetime.now().isoformat(" ", "milliseconds")
@@ -168,13 +163,13 @@ class Store:
 
 
 def _as_json(record: Record) -> str:
-    """A record as it is stored, with what its marks come to."""
+    """Return a record as it is stored, with the sums of its marks."""
     sums: dict[str, Json] = {"points": record.points, "worth": record.worth}
     return as_text(record.as_json() | sums | {"undecided": record.undecided})
 
 
 def record_in(path: Path) -> Record:
-    """The record that a file holds.
+    """Read the record in a file.
 
     Raises
     ------
@@ -184,9 +179,7 @@ def record_in(path: Path) -> Record:
 
 
 def as_text(value: Mapping[str, object] | Iterable[object]) -> str:
-    """JSON with a line for each entry of the outermost list or
-    object: short, and still to be read.
-    """
+    """Return readable JSON with a line for each entry of the outermost list or object."""
     if isinstance(value, Mapping):
         lines = [
             f"{json.dumps(name, ensure_ascii=False)}: {json.dumps(inner, ensure_ascii=False)}"
@@ -196,19 +189,16 @@ def as_text(value: Mapping[str, object] | Iterable[object]) -> str:
     return "[\n" + ",\n".join(json.dumps(inner, ensure_ascii=False) for inner in value) + "\n]\n"
 
 
-#: What Windows keeps for itself, whatever follows a dot: folders of it
-#: are what containers there write to.
+#: Names that Windows reserves for devices, with any extension.
 RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?")
 
 
 def file_name(name: str) -> str:
-    """A name for a file that a student's name cannot lead astray;
-    different names stay different.
-    """
+    """Return a safe file name for a student's name; different names stay different."""
     plain = re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip(".-")[:60]
-    # The letter's case counts too: some file systems do not tell a from A. And what looks like a
-    # name with a digest gets one as well, or somebody could call himself what another is called
-    # here. It is as long as it is because a name of the same digest could be searched for.
+    # Upper case counts, too, since some file systems do not distinguish a from A. A name that looks
+    # as if it had a digest gets one as well, or students could name themselves like somebody else's
+    # file. The digest is long enough that nobody can search for a name with the same one.
     if RESERVED.fullmatch(plain.lower()):
         plain = ""
     if plain and plain == name == name.lower() and not re.search(r"-[0-9a-f]{20}$", name):
@@ -223,11 +213,10 @@ def write(
     lasting: bool = True,
     private: bool = False,
 ) -> None:
-    """Write a file so that it is there whole or not at all; if it is to
-    last, also if the machine goes down.
+    """Write a file so that it is complete or missing; a lasting one even if the machine crashes.
 
-    ``text`` is text, bytes or pieces of text that come one after another. What is ``private`` holds
-    right answers or marks: nobody else who works on this machine may read it.
+    ``text`` is a string, bytes, or an iterable of such pieces. ``private`` files contain right
+    answers or marks, and nobody else on this machine may read them.
     """
     path = Path(path)
     path.parent.mkdir(mode=0o700 if private else 0o777, parents=True, exist_ok=True)
@@ -248,7 +237,8 @@ def write(
             file.flush()
             os.fsync(file.fileno())
     os.replace(half, path)
-    if lasting and hasattr(os, "O_DIRECTORY"):  # Windows cannot open a directory
+    # Windows cannot open a directory.
+    if lasting and hasattr(os, "O_DIRECTORY"):
         folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY)
         try:
             os.fsync(folder)

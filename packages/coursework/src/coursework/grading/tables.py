@@ -1,4 +1,4 @@
-"""Tables that a spreadsheet opens, in which nothing that a student wrote is a formula."""
+"""Tables for spreadsheets, in which nothing that a student wrote becomes a formula."""
 
 import csv
 import io
@@ -13,7 +13,7 @@ STARTS_A_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 def as_cell(value: object) -> str:
-    """A value as the text of a cell: text that a spreadsheet would work out is marked as text.
+    """Return a value as the text of a cell, marking text that a spreadsheet would evaluate.
 
     >>> as_cell('=1+1'), as_cell('\\uff1d1'), as_cell(2.0), as_cell('one\\ntwo')
     ("'=1+1", "'\\uff1d1", '2', 'one two')
@@ -21,7 +21,7 @@ def as_cell(value: object) -> str:
     if isinstance(value, (int, float)):
         return number(value)
     text = in_a_line(str(value), 2_000)
-    # Also what looks the same to some spreadsheets: the wide forms of these signs.
+    # Include the wide forms of these characters, which some spreadsheets treat alike.
     starts = unicodedata.normalize("NFKC", text[:1])
     return (
         f"'{text}"
@@ -31,7 +31,7 @@ def as_cell(value: object) -> str:
 
 
 def as_written(cell: str) -> str:
-    """The text that `as_cell` marked."""
+    """Return the text that `as_cell` marked."""
     plain = cell.removeprefix("'")
     return (
         plain
@@ -41,17 +41,17 @@ def as_written(cell: str) -> str:
 
 
 def number(value: float) -> str:
-    """Points without needless zeros."""
+    """Return points without trailing zeros."""
     return f"{value:.4f}".rstrip("0").rstrip(".") if value != int(value) else str(int(value))
 
 
 def table(header: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
-    """A table as CSV, every text in quotation marks."""
+    """Return a table as CSV, with all strings quoted."""
     return "".join(lines(header, rows))
 
 
 def lines(header: Iterable[str], rows: Iterable[Iterable[object]]) -> Iterator[str]:
-    """The lines of a table as CSV, one after another, for a table that no memory need hold."""
+    """Iterate over the lines of a table as CSV, so that it need not fit in memory."""
     file = io.StringIO()
     writer = csv.writer(file, quoting=csv.QUOTE_ALL, lineterminator="\r\n")
     for row in itertools.chain([header], ([as_cell(value) for value in row] for row in rows)):
@@ -62,7 +62,5 @@ def lines(header: Iterable[str], rows: Iterable[Iterable[object]]) -> Iterator[s
 
 
 def in_a_line(text: str, most: int) -> str:
-    """Text of strangers as part of one line: it cannot begin
-    another, which would seem to be ours.
-    """
+    """Return strangers' text for part of a line, so that it cannot begin a line that seems ours."""
     return " ".join(readable(text, most).split())

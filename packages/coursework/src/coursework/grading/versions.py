@@ -1,4 +1,4 @@
-"""The versions of all that answers and marks may depend on."""
+"""The versions of everything that answers and marks may depend on."""
 
 import functools
 import hashlib
@@ -11,16 +11,16 @@ from ..checking.plugins import folders_of, packages
 
 
 def folders() -> list[Path]:
-    """The folders of this package and of those that a course brings.
+    """Return the folders of this package and of a course's own packages.
 
-    A changed line in any changes how somebody is judged, and then everybody is judged again.
+    A changed line in any of them may change marks, so everybody is judged again.
     """
     return [Path(__file__).parents[1], *map(Path, folders_of(packages()))]
 
 
 @functools.cache
 def software() -> dict[str, str]:
-    """The versions, by name; this package and those of the course are told by all their code."""
+    """Return the versions by name, with a digest of all code of this package and the course's."""
     return {
         "python": platform.python_version(),
         **{name: metadata.version(name) for name in ("sympy", "mpmath", "numpy", "matplotlib")},
@@ -29,7 +29,7 @@ def software() -> dict[str, str]:
 
 
 def digest_of_packages(of: Iterable[Path] = ()) -> str:
-    """A short text that follows from every line of code of the packages."""
+    """Return a digest of all code of the packages."""
     digest = hashlib.sha256()
     for package in of or folders():
         for path in sorted(package.rglob("*.py")):

@@ -1,7 +1,7 @@
-"""Processes that work side by side: each takes a task, says what came of it, and takes the next.
+"""Parallel worker processes, each of which takes a task, returns its result and takes the next.
 
-They are copies of the process that asks, so they know what it knows and only a task and what came
-of it are sent, as JSON. However the process that asks ends, they end with it.
+They are forks of this process and share its data, so only tasks and results are sent, as JSON. They
+end with this process, however it ends.
 """
 
 import contextlib
@@ -22,17 +22,19 @@ Task = TypeVar("Task")
 Done = TypeVar("Done")
 
 PR_SET_PDEATHSIG = 1
-WAIT_FOR_END = 30  # seconds for a process to end what it started
-ATTEMPTS_OF_A_TASK = 3  # how often a task is given out when a process ends under it
+# Seconds for a process to end what it started.
+WAIT_FOR_END = 30
+# How many times a task is tried if a process dies on it.
+ATTEMPTS_OF_A_TASK = 3
 
 
 def processors() -> int:
-    """How many processors this process may use."""
+    """Return the number of processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 class TaskLost(RuntimeError):
-    """Several worker processes in a row died on the same task."""
+    """An error because several worker processes in a row died on the same task."""
 
 
 def side_by_side(
@@ -42,25 +44,25 @@ def side_by_side(
     errors: Collection[type[Exception]] = (),
     lost: Callable[[Task], Done] | None = None,
 ) -> Iterator[Done]:
-    """Do tasks in several processes; give what comes of them as it comes.
+    """Do tasks in several processes, and yield their results as they come.
 
     Parameters
     ----------
     tasks : iterable
-        Of what JSON can hold.
+        The tasks, as JSON data.
     number : int
-        Of processes.
+        The number of processes.
     prepare : function
-        Called once in each process, with an `contextlib.ExitStack`: gives the function that
-        does a task.
+        Called once in each process with a `contextlib.ExitStack`; returns the function that does a
+        task.
     errors : collection of type
-        Exceptions of one text that may come of a task, and are raised here.
+        Exceptions with one string argument that a task may raise, and that are raised here.
     lost : function, optional
-        Called here with a task under which process after process ended: gives what comes of it.
+        Called here with a task on which process after process died; returns its result.
 
     Yields
     ------
-    What came of each task, from what JSON can hold.
+    The result of each task, from JSON data.
 
     Raises
     ------
@@ -108,7 +110,7 @@ def side_by_side(
 
 
 class _Worker(Generic[Task, Done]):
-    """One of the processes, as the one that asks sees it."""
+    """One of the processes, as its parent sees it."""
 
     def __init__(self, prepare: Callable[[contextlib.ExitStack], Callable[[Task], Done]]) -> None:
         self.connection, other = multiprocessing.Pipe()
@@ -116,8 +118,8 @@ class _Worker(Generic[Task, Done]):
         self.attempts = 0
         asking = os.getpid()
         with warnings.catch_warnings():
-            # The copy uses nothing that another thread of this process may hold: it
-            # works on its own things only.
+            # The copy uses only objects of its own, so no other thread of this process holds its
+            # locks.
             warnings.simplefilter("ignore", DeprecationWarning)
             self.process = multiprocessing.get_context("fork").Process(
                 target=_work, args=(other, prepare, asking), daemon=True
@@ -127,24 +129,25 @@ class _Worker(Generic[Task, Done]):
 
     def take(self, task: Task, attempts: int = 1) -> None:
         self.task, self.attempts = task, attempts
-        with contextlib.suppress(OSError):  # that it has ended is noticed when it does not answer
+        # A dead process is noticed when it does not answer.
+        with contextlib.suppress(OSError):
             self.connection.send_bytes(json.dumps({"task": task}).encode())
 
     def take_next(self, tasks: Iterable[Task]) -> bool:
-        """Take the next task; whether there is one."""
+        """Take the next task, and return whether there is one."""
         for task in tasks:
             self.take(task)
             return True
         return False
 
     def let_go(self) -> None:
-        """Have it end by itself, and wait until what it started has ended too."""
+        """Let the process end by itself, and wait until what it started has ended too."""
         with contextlib.suppress(OSError):
             self.connection.send_bytes(b"{}")
         self.process.join()
 
     def end(self) -> None:
-        """End it now, and what it started."""
+        """End the process now, with what it started."""
         self.process.terminate()
         self.process.join(WAIT_FOR_END)
         self.process.kill()
@@ -160,8 +163,10 @@ def _work(
     if sys.platform.startswith("linux"):
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != asking:
-        return  # it ended before it could be said that this one ends with it
-    # Ctrl+C is for the one that asks; what is started here is to hear it again.
+        # The parent ended before this process could ask to end with it.
+        return
+    # Ctrl+C is for the parent. A handler, unlike SIG_IGN, is not inherited by programs started
+    # here.
     signal.signal(signal.SIGINT, lambda number, frame: None)
     signal.signal(signal.SIGTERM, _leave)
 
@@ -175,13 +180,15 @@ def _work(
                 say(done=do(message["task"]))
         except (EOFError, BrokenPipeError):
             raise
-        except OSError as error:  # a full disk, say
+        # For example, a full disk.
+        except OSError as error:
             where = f": {error.filename}" if error.filename else ""
             say(error=["OSError", f"{error.strerror or error}{where}", traceback.format_exc()])
             connection.recv_bytes()
         except Exception as error:
             say(error=[type(error).__name__, str(error), traceback.format_exc()])
-            connection.recv_bytes()  # it is ended from there
+            # The parent ends this process.
+            connection.recv_bytes()
 
 
 def _leave(number: int, frame: FrameType | None) -> NoReturn:

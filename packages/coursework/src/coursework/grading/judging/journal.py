@@ -506,8 +506,7 @@ class Journal:
         of: Appealed | None = None,
         **more: Any,
     ) -> Appeal:
-        """Raise an appeal, or take the next step ``of`` one, ``after`` the step that the person
-        saw.
+        """Raise an appeal, or take the next step ``of`` one, ``after`` the step that somebody saw.
 
         Raises
         ------
@@ -567,8 +566,7 @@ class Journal:
         ]
 
     def take_back(self, records: Iterable[Record], question: str, who: str, why: str = "") -> None:
-        """Take back a person's last decision on each of these answers; the one before it counts
-        again.
+        """Take back a person's last decision on each of these answers; the one before counts again.
 
         Raises
         ------

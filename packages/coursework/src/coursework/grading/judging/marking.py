@@ -267,8 +267,7 @@ def earlier_variants(
 
 
 def asked_of_sandbox(questions: Mapping[str, Contract]) -> dict[str, dict[str, Json]]:
-    """Return what the sandbox needs for each question: the answer's name and the calls of a
-    function.
+    """Return what the sandbox needs for each question: an answer's name and a function's calls.
 
     A notebook receives the secret calls only when it has handed in everything else.
     """
@@ -559,8 +558,7 @@ def judge(
 
 
 def in_calls_of(question: Asked, plain: Plain) -> Plain | None:
-    """Put a function's results in the order of a question's current calls; ``None`` if some are
-    missing.
+    """Order a function's results by a question's current calls; ``None`` if one is missing.
 
     The record has the results of the contract's calls, one after another.
     """

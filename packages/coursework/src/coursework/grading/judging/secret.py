@@ -39,8 +39,7 @@ ATTEMPTS = 60
 
 
 def secret_beside(folder: str | Path) -> bytes:
-    """Return the secret of a course, from the file beside its solutions; create it at the first
-    run.
+    """Return the secret of a course, from the file beside its solutions; create it if missing.
 
     Raises
     ------

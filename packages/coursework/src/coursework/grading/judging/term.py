@@ -528,8 +528,7 @@ def read_term(path: str | Path) -> Term:
 
 
 def notebooks_of(name: str, questions: Iterable[str]) -> tuple[str, ...]:
-    """Return the notebooks of an assignment: those of a sitting's questions, or the one of its
-    name.
+    """Return the notebooks of an assignment: those of a sitting's questions, or the namesake.
 
     >>> notebooks_of("quiz", ["levers/see-saw", "levers/plain"]), notebooks_of("levers", ())
     (('levers',), ('levers',))

@@ -507,9 +507,7 @@ def looks_like(name: str) -> str:
 
 
 def _when(text: str) -> tuple[int, ...]:
-    """Return the numbers of Brightspace's ``Nov 21, 2026 801 PM``, English in every language
-    setting.
-    """
+    """Return the numbers of Brightspace's ``Nov 21, 2026 801 PM``, English in all languages."""
     month, day, year, clock, half = text.replace(",", "").split()
     number = MONTHS.index(month[:3].lower()) + 1 if month[:3].lower() in MONTHS else 0
     hour = int(clock[:-2]) % 12 + (12 if half == "PM" else 0)

@@ -129,8 +129,7 @@ class Beside(NamedTuple):
 
 
 class Notebook(NamedTuple):
-    """A submitted notebook. Its cells are read on demand, so that a large class needs little
-    memory.
+    """A submitted notebook. Its cells are read on demand, so a large class needs little memory.
 
     Attributes
     ----------

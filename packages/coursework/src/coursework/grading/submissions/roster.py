@@ -148,8 +148,7 @@ class Roster:
             self.index.setdefault(("own", _same("own", group)), set()).add(group)
 
     def find(self, keys: Iterable[tuple[str, str]], place: str = "") -> tuple[str | None, str]:
-        """Return the student that a claim's keys mean and how they matched, or ``None`` and why
-        nobody.
+        """Return the student that a claim's keys mean and how they match, or ``None`` and why not.
 
         ``place`` is the name of the folder or file, which the roster may list under ``handed in
         as``.
