@@ -1,1 +1,1 @@
-"""Run apart: notebooks run in isolation, and their answers come out as plain data."""
+"""Isolated execution of notebooks, which returns their answers as plain data."""

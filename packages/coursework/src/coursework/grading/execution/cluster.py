@@ -1,9 +1,8 @@
-"""The same grading on a Dask cluster: a job goes out as bytes, a result comes back as JSON.
+"""Grading on a Dask cluster: a job goes out as bytes, and a result comes back as JSON.
 
-Each worker has a sandbox of its own for each of its threads, as one machine has for each of its
-workers. Verdicts are made where the command was given: right answers never leave that machine. A
-worker that is lost is made up for by the others; what comes of a notebook does not depend on where
-it was run.
+Each thread of a worker has a sandbox of its own, like each worker process on one machine. Answers
+are judged where the command was given, so right answers never leave that machine. If a worker is
+lost, the others take over; a notebook's result does not depend on where it ran.
 """
 
 import contextlib
@@ -34,7 +33,7 @@ CONNECT_WITHIN = "30s"
 
 
 class Sandboxes(WorkerPlugin):
-    """The sandboxes of one worker; they end with the grading."""
+    """The sandboxes of one worker, which end with the grading."""
 
     def __init__(self, name: str, limits: Mapping[str, Any], allow_weak_isolation: bool) -> None:
         self.name = name
@@ -60,7 +59,7 @@ class Sandboxes(WorkerPlugin):
 
 
 def run_job(job: bytes, name: str) -> bytes:
-    """Run one job, on a worker; whatever happens, the answer is JSON."""
+    """Run one job on a worker; whatever happens, return JSON."""
     about: Job = json.loads(job)
     found: dict[str, Json]
     try:
@@ -75,8 +74,9 @@ def run_job(job: bytes, name: str) -> bytes:
 
 
 class _PlainData(pickle.Unpickler):
-    """Reads pickles of texts, bytes, numbers, lists and the like, which can do
-    nothing; Dask wraps some in others.
+    """An unpickler for strings, bytes, numbers, lists and the like, which cannot run code.
+
+    Dask wraps some plain data in pickles.
     """
 
     def find_class(self, module: str, name: str) -> object:
@@ -90,7 +90,8 @@ class _PlainData(pickle.Unpickler):
             "tuple",
             "dict",
         ):
-            return super().find_class(module, name)  # how the bytes of an error say what they are
+            # Errors wrap their bytes in one of these types.
+            return super().find_class(module, name)
         raise TypeError(
             "We refused a pickle, because whoever sent it could run code on this machine, which "
             "holds the right answers."
@@ -103,11 +104,10 @@ def plain_data(data: bytes, *, buffers: Iterable[object] = ()) -> object:
 
 @contextlib.contextmanager
 def no_pickles() -> Iterator[None]:
-    """Have this process, as a client of Dask, run nothing by unpickling what
-    a worker or the scheduler sends.
+    """Prevent Dask's client in this process from running code by unpickling foreign data.
 
-    Naming the serializers of the results is not enough: the types of results, errors and warnings
-    come as pickles of their own.
+    Naming the serializers of the results is not enough, since the types of results, errors and
+    warnings come as separate pickles.
     """
     replaced = (
         (protocol.pickle, "loads", plain_data),
@@ -132,16 +132,17 @@ def run_on_cluster(
     keys: Path | None = None,
     allow_weak_isolation: bool = False,
 ) -> Iterator[Result]:
-    """Run jobs on the cluster at an address; give the results as they come.
+    """Run jobs on the cluster at an address, and yield the results as they come.
+
     ``keys`` is the folder of its keys.
 
     Raises
     ------
     ValueError
-        The cluster cannot be reached or was lost, or its software is not the same as here, so that
-        results might differ.
+        The cluster cannot be reached or was lost, or its software differs from that on this
+        machine, so that results might differ.
     WeakIsolation
-        A worker cannot keep student code apart.
+        A worker cannot isolate student code.
     """
     name = f"coursework-{uuid.uuid4().hex}"
     ours = software()
@@ -179,8 +180,8 @@ def run_on_cluster(
             try:
                 answer = json.loads(future.result())
             except Exception as error:
-                # What a worker did comes as a pickle, which stays one: an error of the
-                # connection is our own client's.
+                # A worker's error comes as a pickle, which we do not unpickle. An error of these
+                # types is from our own client's connection.
                 if client.status != "running" or isinstance(
                     error, (FutureCancelledError, CancelledError, OSError)
                 ):
@@ -188,8 +189,8 @@ def run_on_cluster(
                         f"We lost the connection to the scheduler at {address}. The finished "
                         "results are kept. Run the same command again to resume."
                     ) from None
-                # An error comes as a pickle, and stays one. That worker after
-                # worker died is no secret in it.
+                # We do not unpickle it, but the fact that worker after worker died is legible in
+                # it.
                 if not any(
                     b"KilledWorker" in part for part in error.args if isinstance(part, bytes)
                 ):
@@ -215,18 +216,15 @@ def _security(keys: Path | None) -> Security | None:
 
 
 def _leave(client: Client, name: str) -> None:
-    """End the sandboxes of the workers. Where the scheduler is gone, its workers
-    end with it: nobody is to be told.
-    """
+    """End the sandboxes of the workers; without a scheduler, the workers have ended already."""
     if client.status == "running":
-        with contextlib.suppress(OSError):  # it may be lost at this very moment
+        # The connection may be lost at this very moment.
+        with contextlib.suppress(OSError):
             client.unregister_worker_plugin(name)
 
 
 def _demand_sound(answer: object, job: Job, ours: Mapping[str, str]) -> Result:
-    """A worker may have been captured by what it ran: what it sends is
-    looked at like what a notebook sends.
-    """
+    """Check a worker's result like a notebook's, since what it ran may have captured it."""
     try:
         about = Fields(answer, "what a worker sent")
         if weak := about.maybe("weak", text):

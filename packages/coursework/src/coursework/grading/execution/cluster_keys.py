@@ -1,7 +1,7 @@
-"""The keys of a cluster, and the commands that start one: who has no key is not listened to.
+"""The keys of a cluster, and the commands that start one that requires them.
 
-A scheduler of Dask runs whatever code it is sent. One that asks for no key runs anybody's who can
-reach it, on all of its machines, so that there is no way here to start one like that.
+A Dask scheduler runs whatever code it receives. One without keys would run, on all of its machines,
+the code of anybody who can reach it, so there is no way here to start one like that.
 """
 
 import os
@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 CERTIFICATE, KEY = "cluster.pem", "cluster.key"
 DAYS = 365
 PORT = 8786
-#: One certificate, signed by itself, that is trusted by whoever holds it and by nobody else.
+#: A self-signed certificate, which only those who hold it trust.
 REQUEST = [
     *(
         "openssl",
@@ -39,11 +39,11 @@ LOOPBACK = ("127.0.0.1", "::1", "localhost")
 
 
 class NoKeys(ValueError):
-    """Keys are missing or cannot be made; the message says what to do."""
+    """An error for keys that are missing or cannot be made; the message says what to do."""
 
 
 def make_keys(folder: Path) -> bool:
-    """Make the keys of a cluster in a folder that nobody else can read; whether there were none.
+    """Make the keys of a cluster in a private folder, and return whether there were none.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def make_keys(folder: Path) -> bool:
 
 
 def options(folder: Path) -> list[str]:
-    """What a scheduler or worker of Dask is told of its keys."""
+    """Return the options for the keys of a Dask scheduler or worker."""
     for name in (CERTIFICATE, KEY):
         if not (folder / name).exists():
             raise NoKeys(
@@ -82,12 +82,13 @@ def options(folder: Path) -> list[str]:
     return ["--tls-ca-file", certificate, "--tls-cert", certificate, "--tls-key", key]
 
 
-#: Even without a dashboard Dask shows what it does to whoever asks, so it listens to this machine.
+#: Even without a dashboard, Dask shows its activity to anybody who asks, so it listens to this
+#: machine only.
 ALONE = ["--no-dashboard", "--dashboard-address", "127.0.0.1:0"]
 
 
 def scheduler(folder: Path, host: str, port: int = PORT) -> list[str]:
-    """The command that starts a scheduler, which listens to those alone who have its key."""
+    """Return the command that starts a scheduler, which accepts only those who have its keys."""
     asked = [
         *options(folder),
         "--protocol",
@@ -102,14 +103,15 @@ def scheduler(folder: Path, host: str, port: int = PORT) -> list[str]:
 
 
 def worker(folder: Path, address: str, workers: int) -> list[str]:
-    """The command that starts the workers of a machine, each of one notebook at a time."""
+    """Return the command that starts a machine's workers, each for one notebook at a time."""
     if not address.startswith("tls://"):
         raise NoKeys(
             f"The address of a scheduler with keys begins with tls://; {address!r} does not."
         )
     place = urlsplit(address)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as way:
-        way.connect((place.hostname or "", place.port or PORT))  # sends nothing
+        # This sends nothing.
+        way.connect((place.hostname or "", place.port or PORT))
         own = way.getsockname()[0]
     asked = [
         *options(folder),
@@ -127,7 +129,7 @@ def worker(folder: Path, address: str, workers: int) -> list[str]:
 
 
 def demand_keys(address: str, folder: Path | None) -> None:
-    """Refuse a scheduler that listens to everybody, unless only this machine can reach it.
+    """Reject a scheduler that accepts anybody, unless only this machine can reach it.
 
     Raises
     ------

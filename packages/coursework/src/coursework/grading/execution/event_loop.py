@@ -1,7 +1,6 @@
 """An event loop for cells that await something, where no socket may be opened.
 
-The loops of the standard library wake themselves up through a pair of
-sockets; this one does through a pipe.
+The loops of the standard library wake up through a pair of sockets; this one uses a pipe.
 """
 
 import asyncio
@@ -40,7 +39,7 @@ class PipeEventLoop(asyncio.SelectorEventLoop):
     >>> loop.close()
     """
 
-    # Of the loop itself, which names these nowhere in its public face.
+    # Private members of the loop, which have no public names.
     _internal_fds: int
     _add_reader: Callable[[int, Callable[[], None]], None]
     _read_from_self: Callable[[], None]

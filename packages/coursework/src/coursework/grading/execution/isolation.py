@@ -1,36 +1,34 @@
-"""What keeps a student's code apart from the machine, in layers that
-are tried before they are trusted.
+"""Isolation of students' code, in layers that are tested before we trust them.
 
-Each layer alone stops something; together they must stop every attempt of `ATTEMPTS`, and it
-is tried at each start whether they do. Student code is not run otherwise.
+Each layer stops something on its own; together they must stop every attempt of `ATTEMPTS`, which we
+test at each start. Otherwise we run no student code.
 
 namespaces
-    The warm parent and its children see a root folder made for them: Python, its libraries and
-    nothing else, read only; a network with no way out; no processes but their own, so that ending
-    the first ends all. Each notebook has its own scratch folder, in memory and of limited size.
-    Made by bubblewrap, where it is installed and works. Does not limit memory or processor, and
-    leaves the kernel's whole surface open. Missing on systems that forbid unprivileged user
-    namespaces (Ubuntu 24.04 does), inside most containers, and always without Linux.
+    The warm parent and its children see a root folder of their own with Python and its libraries,
+    read only; a network with no way out; and no processes but their own, so that ending the first
+    ends all. Each notebook has its own scratch folder in memory, of limited size. Made by
+    bubblewrap, where it is installed and works. Does not limit memory or processor time, and leaves
+    the whole system-call interface open. Missing on systems that forbid unprivileged user
+    namespaces (as Ubuntu 24.04 does), inside most containers, and always without Linux.
 landlock
-    The kernel lets the process read Python's own files and write in its scratch folder only. From
-    Linux 6.2 it can stand in for the root folder of its own; from 6.7 it refuses TCP, from 6.12
-    local sockets and signals too. Does not cover UDP, does not hide that a file exists, and does
-    not cover changes of modes and owners: the next layer does.
+    The kernel lets the process read only Python's own files and write only in its scratch folder.
+    From Linux 6.2 on it can replace the root folder of its own; from 6.7 it refuses TCP, and from
+    6.12 local sockets and signals. Does not cover UDP, hide whether a file exists, or stop changes
+    of modes and owners, which the next layer does.
 seccomp
     A list of system calls (see `coursework.grading.execution.system_calls`): no socket of any
     kind, no new process, no other program, no signal to others, no change of modes. Cannot tell one
     file from another.
 resource limits
-    Memory, processor time, size of a file, open files, threads, no core files. They hold for one
-    process, so they bound a notebook only together with seccomp, which allows it only one.
+    Memory, processor time, size of a file, open files, threads, no core files. They apply to one
+    process, so they limit a notebook only together with seccomp, which allows it only one.
 no privileges
     No capabilities, no way to gain any, and, if grading is started by root, another user.
 
-What is enough, then: seccomp, resource limits and no privileges, with namespaces or a recent
-Landlock. That the environment is empty, files are closed and output goes nowhere belongs to every
-start.
+Sufficient are therefore seccomp, resource limits and no privileges, with namespaces or a recent
+Landlock. Every start also empties the environment, closes files and discards output.
 
-All of it is standard library and system calls; nothing here knows about notebooks or answers.
+It uses only the standard library and system calls, and knows nothing about notebooks or answers.
 """
 
 import contextlib
@@ -71,14 +69,14 @@ HOW_TO_GET = {
 
 
 class Time(TypedDict):
-    """Seconds that a cell, or the reading of an answer, may take."""
+    """Seconds that a cell, or reading an answer, may take."""
 
     processor: float
     wall: float
 
 
 class LimitsOfChild(TypedDict):
-    """What one notebook may use, for the process that runs it."""
+    """The limits of one notebook, for the process that runs it."""
 
     cell: Time
     answer: Time
@@ -90,7 +88,7 @@ class LimitsOfChild(TypedDict):
     threads: int
 
 
-#: What the isolation is tried on.
+#: The targets of the attempts that test the isolation.
 Target = TypedDict(
     "Target",
     {
@@ -103,7 +101,7 @@ Target = TypedDict(
     },
 )
 Layer = TypedDict("Layer", {"in force": bool, "why not": str})
-#: What came of trying it.
+#: The result of testing it.
 Report = TypedDict(
     "Report",
     {
@@ -115,7 +113,7 @@ Report = TypedDict(
 
 
 class IsolationError(OSError):
-    """A layer could not be put in force; the message says which and why."""
+    """An error for a layer that could not be put in force; the message says which and why."""
 
 
 _library = ctypes.CDLL(None, use_errno=True)
@@ -140,18 +138,18 @@ def _system_call(what: str, number: int, *arguments: int | bytes) -> int:
     return _call(what, _library.syscall(ctypes.c_long(number), *longs))
 
 
-# ---- what Python must be able to read
+# ---- files that Python must be able to read
 
 DEVICES = ("/dev/null", "/dev/zero", "/dev/urandom", "/dev/random")
 
 
 def readable_paths() -> list[str]:
-    """The folders and files that Python and the libraries are loaded from, and no others."""
+    """Return the files and folders that Python and the libraries are loaded from, and no others."""
     import site
 
     wanted = [sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")]
     wanted += site.getsitepackages()
-    # Shared libraries: of this Python, then of the system.
+    # Include shared libraries, first of this Python, then of the system.
     wanted += [
         sysconfig.get_config_var("LIBDIR"),
         "/lib",
@@ -163,13 +161,13 @@ def readable_paths() -> list[str]:
         "/etc/ld.so.cache",
         "/usr/share/zoneinfo",
     ]
-    # The interpreter itself, for bubblewrap to start.
+    # Include the interpreter itself, for bubblewrap to start.
     wanted += [
         sys.executable,
         os.path.realpath(sys.executable),
         os.path.join(sys.prefix, "pyvenv.cfg"),
     ]
-    # This package and those of the course, also where they are installed from a working copy.
+    # Include this package and the course's, even if installed from a working copy.
     wanted.append(str(Path(__file__).resolve().parents[2]))
     wanted += folders_of(packages())
     existing = sorted({os.path.abspath(path) for path in wanted if path and os.path.exists(path)})
@@ -189,14 +187,14 @@ SCRATCH = "/scratch"
 
 
 def bubblewrap_command(bubblewrap: str, readable: Iterable[str]) -> list[str]:
-    """The command line in front of the warm parent that gives it namespaces."""
+    """Return the command line in front of the warm parent that gives it namespaces."""
     command = [bubblewrap, "--as-pid-1", "--die-with-parent", "--cap-drop", "ALL"]
     for namespace in ("ipc", "pid", "net", "uts", "cgroup-try"):
         command.append(f"--unshare-{namespace}")
     if os.geteuid() != 0:
         command.append("--unshare-user")
-    # What the warm parent needs to mount each notebook's scratch folder, and to change its user if
-    # it is root; the notebook's process gives all of it up.
+    # The warm parent needs these to mount each notebook's scratch folder and, if it is root, to
+    # change its user. The notebook's process gives all of them up.
     for capability in (
         "SYS_ADMIN",
         "SETPCAP",
@@ -208,12 +206,12 @@ def bubblewrap_command(bubblewrap: str, readable: Iterable[str]) -> list[str]:
         "FOWNER",
     ):
         command += ["--cap-add", f"CAP_{capability}"]
-    # Each path must be found where it is named, and where its links lead.
+    # Each path must exist where it is named, and where its links lead.
     places: dict[str, str] = {}
     for path in readable:
         for name in (path, os.path.realpath(path)):
             places.setdefault(name, path)
-    # Folders on the way would be closed to the user that root gives the code to.
+    # Bubblewrap would create the folders above them closed to the user that root runs the code as.
     on_the_way = (
         {str(parent) for name in places for parent in Path(name).parents} - {"/"} - set(places)
     )
@@ -228,7 +226,7 @@ def bubblewrap_command(bubblewrap: str, readable: Iterable[str]) -> list[str]:
 
 
 def mount_own_scratch(folder: str, size: int, user: int) -> None:
-    """Give this process alone a scratch folder in memory; it vanishes with the process."""
+    """Give this process alone a scratch folder in memory, which vanishes with the process."""
     _call("unshare", _library.unshare(CLONE_NEWNS))
     _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))
     options = f"size={size},nr_inodes={max(64, size // 4096)},mode=0700,uid={user},gid={user}"
@@ -249,7 +247,7 @@ MAKE_CHARACTER_DEVICE, MAKE_BLOCK_DEVICE, MAKE_SOCKET, IOCTL_DEVICE = (
 
 
 def landlock_version() -> int:
-    """The version of Landlock's interface; 0 if there is none."""
+    """Return the version of Landlock's interface; 0 if there is none."""
     return max(
         0,
         int(
@@ -261,11 +259,11 @@ def landlock_version() -> int:
 
 
 def restrict_files(readable: Iterable[str], scratch: str) -> None:
-    """Let this process read `readable`, do what it likes in `scratch`, and reach no other file."""
+    """Let this process read `readable`, do anything in `scratch`, and reach no other file."""
     version = landlock_version()
     if version == 0:
         raise IsolationError(errno.ENOSYS, "the kernel has no Landlock")
-    # Each right is a bit, in the order in which the versions brought them.
+    # Each right is a bit, in the order in which the versions added them.
     handled = (1 << 13 + (version >= 2) + (version >= 3) + (version >= 5)) - 1
     packed = struct.pack("=QQQ", handled, 3 if version >= 4 else 0, 3 if version >= 6 else 0)
     packed = packed[: 8 if version < 4 else 16 if version < 6 else 24]
@@ -275,7 +273,8 @@ def restrict_files(readable: Iterable[str], scratch: str) -> None:
         try:
             handle = os.open(path, os.O_PATH | os.O_CLOEXEC)
         except OSError:
-            return  # what is not there needs no permission
+            # A missing file needs no permission.
+            return
         if not stat.S_ISDIR(os.fstat(handle).st_mode):
             access &= EXECUTE | WRITE_FILE | READ_FILE | (1 << 14) | IOCTL_DEVICE
         rule = struct.pack("=Qi", access & handled, handle)
@@ -310,8 +309,8 @@ def limit_resources(limits: LimitsOfChild, memory_in_use: int, threads_in_use: i
         (resource.RLIMIT_FSIZE, limits["file_bytes"]),
         (resource.RLIMIT_NOFILE, limits["open_files"]),
         (resource.RLIMIT_NPROC, threads_in_use + limits["threads"]),
-        # Not 0: a program that handles crashes is started for that all the same,
-        # and for 1 it is not (core(5)).
+        # Not 0, for which a program that handles crashes would be started nevertheless; for 1 it is
+        # not (core(5)).
         (resource.RLIMIT_CORE, 1),
         (resource.RLIMIT_MEMLOCK, 0),
         (resource.RLIMIT_MSGQUEUE, 0),
@@ -324,7 +323,7 @@ def limit_resources(limits: LimitsOfChild, memory_in_use: int, threads_in_use: i
 
 
 def drop_privileges(user: int) -> None:
-    """Become `user` if this is root and may, and give up every capability for good."""
+    """Become `user` if this is root and can, and give up every capability for good."""
     if os.geteuid() == 0 and user != 0:
         os.setgroups([])
         os.setresgid(user, user, user)
@@ -332,23 +331,23 @@ def drop_privileges(user: int) -> None:
     header = struct.pack("=Ii", 0x20080522, 0)
     _call("capset", _library.capset(header, b"\0" * 24))
     forbid_new_privileges()
-    # No other process of this user looks into this one, and what handles crashes here, perhaps as
-    # root, is not handed the memory of one. The limit of core files alone does not stop a handler.
+    # No other process of this user may look into this one, and a crash handler, perhaps run as
+    # root, must not receive its memory. The limit of core files alone does not stop a handler.
     _call("dumpable", _library.prctl(4, 0, 0, 0, 0))
 
 
 def forbid_new_privileges() -> None:
-    """No program that this process starts can have more rights than it has; seccomp asks for it."""
+    """Prevent programs started here from gaining rights, which seccomp requires."""
     _call("no_new_privs", _library.prctl(38, 1, 0, 0, 0))
 
 
 def user_for_students(preferred: int, uid_map: str) -> int:
-    """The user that root runs student code as: one that nobody else is, if this system has it.
+    """Return the user that root runs student code as, a user of its own if the system has it.
 
     Raises
     ------
     RuntimeError
-        There is no other user than root here.
+        Root is the only user here.
     """
     if os.geteuid() != 0:
         return os.geteuid()
@@ -369,7 +368,7 @@ def die_with_parent() -> None:
 
 
 def adopt_orphans() -> None:
-    """Processes below this one that lose their parent become its own, so that none gets away."""
+    """Adopt descendants that lose their parent, so that none escapes."""
     _call("prctl", _library.prctl(36, 1, 0, 0, 0))
 
 
@@ -393,7 +392,8 @@ def confine(
         limit_resources(limits, memory_in_use, threads_in_use)
     if PRIVILEGES in layers:
         drop_privileges(user)
-        die_with_parent()  # a change of user forgets it
+        # A change of user cancels it.
+        die_with_parent()
     else:
         forbid_new_privileges()
     if LANDLOCK in layers:
@@ -402,7 +402,7 @@ def confine(
         system_calls.install()
 
 
-# ---- trying
+# ---- testing
 
 
 def _read(target: Target) -> bytes:
@@ -440,7 +440,8 @@ def _tcp(target: Target) -> None:
 def _udp(target: Target) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as udp:
         udp.connect(("127.0.0.1", target["udp"]))
-        for _ in range(2):  # the second hears that nobody received the first
+        # The second call fails if nobody received the first message.
+        for _ in range(2):
             udp.send(b"x")
 
 
@@ -450,7 +451,8 @@ def _local(target: Target) -> None:
 
 
 def _signal(target: Target) -> None:
-    os.kill(-1, 0)  # whether there is any process that it could end; sends nothing
+    # This sends nothing, but checks whether there is any process that could be ended.
+    os.kill(-1, 0)
 
 
 def _process(target: Target) -> None:
@@ -463,7 +465,8 @@ def _program(target: Target) -> None:
     try:
         os.execv("/no/such/program", ["program"])
     except FileNotFoundError:
-        return  # it was looked for, so one that exists would have been started
+        # The system looked for the program, so it would have started one that exists.
+        return
 
 
 def _namespace(target: Target) -> None:
@@ -475,7 +478,7 @@ def _trace(target: Target) -> None:
 
 
 def _privilege(target: Target) -> None:
-    # Only who has privileges may give one up for good; it takes nothing from anybody else.
+    # Only a privileged process may give up a capability for good, which harms nobody else.
     _call("prctl", _library.prctl(24, 0, 0, 0, 0))
 
 
@@ -508,7 +511,7 @@ def _threads(target: Target) -> None:
     threading.stack_size(64 * 1024)
     started = []
     try:
-        # Others of the same user may have ended since they were counted.
+        # Other processes of the same user may have ended since they were counted.
         for _ in range(target["threads in use"] + target["limits"]["threads"] + 1):
             started.append(threading.Thread(target=done.wait))
             started[-1].start()
@@ -521,8 +524,8 @@ def _threads(target: Target) -> None:
             thread.join()
 
 
-#: What student code must not be able to do: how it is tried, and which layers must stop it on their
-#: own. The ones that change the process that tries come last.
+#: What student code must not be able to do: the test, and the layers that must each stop it on
+#: their own. Tests that change the process itself come last.
 ATTEMPTS = {
     "read a file outside": (_read, {NAMESPACES, LANDLOCK}),
     "write a file outside": (_write, {NAMESPACES, LANDLOCK}),
@@ -559,12 +562,12 @@ def attempt_all(target: Target, names: Iterable[str] | None = None) -> list[str]
 
 
 def must_stop(layer: str) -> list[str]:
-    """The attempts that `layer` must stop on its own to count as in force."""
+    """Return the attempts that `layer` must stop on its own to count as in force."""
     return [name for name, (_, layers) in ATTEMPTS.items() if layer in layers]
 
 
 def lacking(report: Report) -> list[str]:
-    """Say, one line for each, what the layers in force do not stop; empty when they are enough."""
+    """Return a line for each thing that the layers in force do not stop; empty if they suffice."""
     lines = []
     for name in report["not stopped"]:
         if name not in ATTEMPTS:

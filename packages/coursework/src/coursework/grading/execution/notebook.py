@@ -1,8 +1,8 @@
-"""Runs the cells of one notebook in a process that is already confined, and records the answers.
+"""Execution of one notebook's cells in a confined process, with records of its answers.
 
-Everything here shares its process with the student's code, which may change any of it. That is
-allowed for: all that leaves is a line of JSON for each event, read strictly outside; the worst that
-a student can do is hand in another answer of his own.
+Everything here shares its process with the student's code, which may change any of it. That is why
+only lines of JSON, one for each event, leave the process, and they are read strictly outside. The
+worst that students can do is hand in another answer of their own.
 
 A line is one of
 
@@ -15,9 +15,9 @@ A line is one of
     {"done": true}
     {"secret": question, "plain": data} or {"secret": question, "unreadable": text}
 
-and is written the moment it is known, so that what comes later cannot lose it. Only after "done"
-come the arguments of the secret calls: what knows them then can hand in no answer any more in which
-they would be shown.
+and is written as soon as it is known, so that nothing later can lose it. Only after "done" do the
+arguments of the secret calls arrive. Code that knows them then can no longer hand in an answer that
+depends on them.
 """
 
 from __future__ import annotations
@@ -54,23 +54,27 @@ if TYPE_CHECKING:
     from coursework.grading.execution.records import Record, Step
 
 LONGEST_ERROR = 500
-WAIT_FOR_SECRET = 30  # seconds; whoever swallowed the records is not answered
-# Magics whose body is the student's code; the others are about the notebook and do nothing here.
+# Seconds; a notebook that swallowed its records gets no secret calls.
+WAIT_FOR_SECRET = 30
+# Magics whose body is the student's code; the others concern the notebook and do nothing here.
 MAGICS_WITH_CODE = ("time", "capture", "prun")
 
 
-OURS: list[str] = []  # the modules of this package, which a notebook is to find none of
+# The modules of this package, which the notebook must not find.
+OURS: list[str] = []
 AWAIT = ast.PyCF_ALLOW_TOP_LEVEL_AWAIT
-PROMPT = "In ["  # pasted with its prompt a line may pass for an annotation
-TICK = 0.5  # seconds by the clock between two looks at whether a step waits
-#: Of a tick what waits spends less than this share.
+# A line pasted with its prompt may pass for an annotation.
+PROMPT = "In ["
+# Seconds of wall time between two checks whether a step waits.
+TICK = 0.5
+#: A step that uses less than this fraction of a tick is waiting.
 WAITING = 0.02
 #: The arguments of each call to a function, and whether lists in them become arrays.
 Calls = TypedDict("Calls", {"arguments": list[list[object]], "as": str})
 
 
 class Job(TypedDict):
-    """A notebook, as this process is told of it."""
+    """A notebook, as this process receives it."""
 
     cells: list[str]
     numbers: list[int | None]
@@ -84,11 +88,11 @@ class Job(TypedDict):
 
 
 class OutOfTime(BaseException):
-    """Raised in the student's code when its time is up; not an Exception, so that few catch it."""
+    """Raised in code that is out of time; not an Exception, so that few handlers catch it."""
 
 
 class Shell:
-    """What `get_ipython()` gives: enough of a shell that magics and `!commands` break nothing."""
+    """The result of `get_ipython()`, a shell in which magics and `!commands` break nothing."""
 
     def __init__(self, execute: Callable[[str], None]) -> None:
         self._execute = execute
@@ -122,7 +126,7 @@ class Shell:
 
 
 class Reply:
-    """What `check` gives here. Marks are not decided in this process."""
+    """The result of `check` in this process, which decides no marks."""
 
     def __repr__(self) -> str:
         return "The answer is recorded."
@@ -130,15 +134,16 @@ class Reply:
     def __getattr__(self, name: str) -> None:
         if name.startswith("__"):
             raise AttributeError(name)
-        return None  # neither right nor wrong
+        # It is neither right nor wrong.
+        return None
 
 
 def nothing(*arguments: object, **options: object) -> None:
-    """Stands for what only shows something."""
+    """Do nothing, in place of functions that only show something."""
 
 
 def arguments_of(calls: Calls) -> list[list[object]]:
-    """The arguments of each call to a function, made anew: it may change them."""
+    """Return the arguments of each call to a function, as new copies, since it may change them."""
     arguments: list[list[object]] = json.loads(json.dumps(calls["arguments"]))
     if calls["as"] == "arrays":
         import numpy
@@ -158,8 +163,8 @@ def warm_up() -> None:
     import sympy
 
     to_plain(sympy.Matrix([[sympy.cos(sympy.Symbol("a")), 0.5]]))
-    # A child that looked through all modules itself would get a copy of every
-    # page that one of their names is on.
+    # Collect the modules before forking. A child that read all names itself would copy every memory
+    # page that contains one.
     OURS[:] = [name for name in sys.modules if name.partition(".")[0] == "coursework"]
 
 
@@ -170,14 +175,14 @@ def transformer() -> TransformerManager:
 
 
 def run(job: int, records: int, secret: int, limits: LimitsOfChild, folder: str) -> None:
-    """Run the job that is read from the handle `job`; write records to the handle `records`.
+    """Run the job read from the handle `job`; write records to the handle `records`.
 
     The secret calls are read from the handle `secret` at the end.
     """
     with open(job, "rb") as file:
         given: Job = json.load(file)
     random.seed(given["seed"])
-    # A short life: what goes round in circles is seldom worth looking for.
+    # The process is short-lived, so reference cycles are seldom worth collecting.
     gc.set_threshold(20_000, 20, 50)
     sys.modules["numpy"].random.seed(given["seed"])
     _Notebook(given, records, secret, limits, folder).run()
@@ -213,8 +218,8 @@ class _Notebook:
         for index in self.job["order"]:
             if ("cell", index) not in self.skipped:
                 self.cell = index
-                # As Jupyter numbered it when it was run last; a cell that
-                # never ran follows the one before.
+                # Number cells as Jupyter did in their last run; a cell that never ran follows the
+                # one before.
                 self.number = self.job["numbers"][index] or (self.number or 0) + 1
                 if isinstance(self.names.get("In"), dict):
                     self.names["In"][self.number] = self.job["cells"][index]
@@ -241,8 +246,8 @@ class _Notebook:
             if question not in self.functions or ("answer", question) in self.skipped:
                 continue
             function, names = self.functions[question]
-            # As it was when it was checked, though a later cell may have used
-            # its names for something else.
+            # Restore the names as they were when it was checked, since a later cell may have reused
+            # them.
             self.names.clear()
             self.names.update(names)
             record: Record = {"secret": question}
@@ -285,16 +290,15 @@ class _Notebook:
         warnings.simplefilter("ignore")
 
     def execute(self, source: str) -> None:
-        """Run source as a notebook's cell is run; the value of its last line
-        becomes ``_`` and ``Out[number]``.
-        """
+        """Run a cell's source, whose last line's value becomes ``_`` and ``Out[number]``."""
         name = f"<cell {self.cell}>"
         tree = self.parsed(source, name)
         last = tree.body[-1] if tree.body else None
         if isinstance(last, ast.Expr):
             tree.body.pop()
         self.evaluate(compile(tree, name, "exec", AWAIT, dont_inherit=True))
-        # What ends in a semicolon is shown neither, and is a value all the same.
+        # A last line that ends in a semicolon is not shown here either, and is a value
+        # nevertheless.
         if isinstance(last, ast.Expr):
             value = self.evaluate(
                 compile(ast.Expression(last.value), name, "eval", AWAIT, dont_inherit=True)
@@ -303,16 +307,14 @@ class _Notebook:
                 self.keep(value)
 
     def parsed(self, source: str, name: str) -> ast.Module:
-        """The syntax tree of a cell. What is Python as it stands has no
-        magics, and is not searched for them.
-        """
+        """Parse a cell. Source that is valid Python has no magics, so do not search it."""
         if PROMPT not in source:
             with contextlib.suppress(SyntaxError, ValueError):
                 return ast.parse(source, name)
         return ast.parse(self.transformer.transform_cell(source), name)
 
     def evaluate(self, code: types.CodeType) -> object:
-        """Run code, to the end of what it awaits if it awaits something."""
+        """Run code, including whatever it awaits."""
         value = eval(code, self.names)
         if code.co_flags & inspect.CO_COROUTINE:
             if self.loop is None:
@@ -329,7 +331,7 @@ class _Notebook:
     def check(
         self, question: object, answer: object = None, *rest: object, **options: object
     ) -> Reply:
-        """Stands for `coursework.checking.check` here: records the answer and tells nothing."""
+        """Record the answer and reveal nothing, in place of `coursework.checking.check`."""
         self.record(str(question)[:200], answer, "check")
         return Reply()
 
@@ -359,10 +361,10 @@ class _Notebook:
         calls = self.job["calls"].get(question)
         return None if calls is None else arguments_of(calls)
 
-    # -- one step: a cell, or the reading of an answer
+    # -- one step: a cell, or reading an answer
 
     def step(self, step: Step, action: Callable[[], object], seconds: Time) -> Record:
-        """Do one thing within its time. Steps may be nested: a check within a cell."""
+        """Do one thing within its time. Steps may be nested, such as a check within a cell."""
         self.emit({"begin": step})
         outer = self.time_left()
         end: Record = {"end": step, "outcome": "done"}
@@ -388,7 +390,7 @@ class _Notebook:
         return end
 
     def start_timers(self, processor: float, wall: float) -> None:
-        # Afresh each time: an earlier cell may have ignored or blocked them.
+        # Set the handlers each time, since an earlier cell may have ignored or blocked the signals.
         for number in (signal.SIGPROF, signal.SIGALRM):
             signal.signal(number, self.time_is_up)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGPROF, signal.SIGALRM))
@@ -398,9 +400,7 @@ class _Notebook:
 
     @staticmethod
     def moment() -> tuple[float, float, int]:
-        """The time by the clock and of the processor, and how often this
-        process gave it away by itself.
-        """
+        """Return the wall time, the processor time, and how often this process gave it away."""
         return (
             time.monotonic(),
             time.process_time(),
@@ -408,7 +408,7 @@ class _Notebook:
         )
 
     def time_left(self) -> tuple[float, float]:
-        """What is left of the processor's time and of the clock's, with both stopped."""
+        """Stop both timers, and return what is left of the processor time and the wall time."""
         signal.setitimer(signal.ITIMER_REAL, 0)
         return signal.setitimer(signal.ITIMER_PROF, 0)[0], self.wall_left
 
@@ -418,7 +418,8 @@ class _Notebook:
         signal.setitimer(signal.ITIMER_REAL, 0)
 
     def time_is_up(self, number: int, frame: types.FrameType | None) -> None:
-        if self.writing:  # half a record would be worse than being late
+        # Half a record would be worse than being late.
+        if self.writing:
             signal.setitimer(signal.ITIMER_REAL, 0.02, TICK)
             self.wall_left = self.wall_left if number == signal.SIGALRM else 0
             return
@@ -428,9 +429,9 @@ class _Notebook:
                 moment - before for moment, before in zip(now, self.looked, strict=True)
             )
             self.looked = now
-            # What computes on a busy machine is charged for what it got, and not for what others
-            # got: only what gave the processor away by itself has waited. It is woken at each tick,
-            # unless the machine is late.
+            # On a busy machine, charge a process that computes only for the processor time that it
+            # got. Only one that gave the processor away by itself has waited. It wakes at each
+            # tick, unless the machine is late.
             waited = gave_way and used < WAITING * elapsed
             self.wall_left -= min(elapsed, TICK) if waited else used
             if self.wall_left > 0:
@@ -438,7 +439,7 @@ class _Notebook:
         raise OutOfTime
 
     def emit(self, record: Record) -> None:
-        # Each record has a line of its own even after other bytes that a student may have written.
+        # Each record gets a line of its own even after other bytes that a student may have written.
         data = b"\n" + self.encode(record).encode() + b"\n"
         self.writing = True
         try:
@@ -448,13 +449,12 @@ class _Notebook:
             self.writing = False
 
     def described(self, error: BaseException) -> Record:
-        """An error as text: its type, its message, and the line of
-        the cell. May run student code.
-        """
+        """Describe an error by its type, message and the line of the cell. May run student code."""
         try:
             self.start_timers(0.2, 0.4)
             try:
-                # The feedback says which cell and line; Python's own words count cells from 0.
+                # The feedback gives the cell and the line, while Python's own message counts cells
+                # from 0.
                 words = error.msg if isinstance(error, SyntaxError) else str(error)
                 text = f"{type(error).__name__}: {words}" if words else type(error).__name__
                 line, trace = None, error.__traceback__
@@ -468,7 +468,7 @@ class _Notebook:
                 self.stop_timers()
         except BaseException:
             return {"error": "An error with an unreadable message."}
-        # The same text on every run: no addresses, no name of this folder.
+        # Keep the text the same on every run, without addresses and the name of this folder.
         text = re.sub(r"0x[0-9a-fA-F]{6,}", "0x...", text[: 4 * LONGEST_ERROR])
         text = text.replace(self.folder, "scratch")[:LONGEST_ERROR]
         described: Record = {"error": text}

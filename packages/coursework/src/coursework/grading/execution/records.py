@@ -1,7 +1,6 @@
-"""The records of a notebook's process, read as what they are:
-bytes that a student may have written.
+"""Strict reading of a notebook's records, which are bytes that a student may have written.
 
-What does not have exactly the form of a record is counted and dropped. Nothing is repaired.
+We count and drop everything that does not have exactly the form of a record, and repair nothing.
 """
 
 import json
@@ -10,16 +9,17 @@ from typing import NoReturn, TypedDict, TypeGuard
 from coursework.checking.plain import NotPlain, Plain, read_plain
 
 LONGEST_LINE = 4 << 20
-MOST_BYTES = 16 << 20  # of all records of one run
+# The most bytes of all records of one run.
+MOST_BYTES = 16 << 20
 MOST_RECORDS = 20_000
 LONGEST_NAME = 200
 LONGEST_TEXT = 1000
 OUTCOMES = ("done", "error", "timeout", "memory")
 
 
-#: What was begun or has ended: ``["cell", number]`` or ``["answer", name]``.
+#: A step that began or ended: ``["cell", number]`` or ``["answer", name]``.
 Step = list[str | int]
-#: Which of these a record has is what `Records.well_formed` looks at.
+#: `Records.well_formed` checks which of these a record has.
 Record = TypedDict(
     "Record",
     {
@@ -42,7 +42,7 @@ Record = TypedDict(
 
 
 class Records:
-    """Takes bytes as they come and gives the records that are whole and well formed."""
+    """A parser that takes bytes as they come and returns the complete, well-formed records."""
 
     def __init__(self, number_of_cells: int) -> None:
         self.number_of_cells = number_of_cells
@@ -74,11 +74,12 @@ class Records:
         return [record for record in records if record is not None]
 
     def record(self, line: bytes) -> Record | None:
-        """One line as a record, or None."""
+        """Return one line as a record, or ``None``."""
         try:
             record = json.loads(line.decode("utf-8"), parse_constant=_refuse)
             if b"\\u" in line:
-                json.dumps(record, ensure_ascii=False).encode("utf-8")  # half characters fail here
+                # Incomplete surrogate pairs fail here.
+                json.dumps(record, ensure_ascii=False).encode("utf-8")
             return record if isinstance(record, dict) and self.well_formed(record) else None
         except (ValueError, RecursionError, NotPlain):
             return None

@@ -1,20 +1,19 @@
-"""Runs students' notebooks in isolation and hands back their answers as plain data.
+"""Isolated execution of students' notebooks, which returns their answers as plain data.
 
-`run_notebooks` takes jobs and gives results, both plain JSON. Three kinds of process take
-part:
+`run_notebooks` takes jobs and yields results, both plain JSON. Three kinds of process take part:
 
-- this one, which is trusted: it starts warm parents, keeps the time, reads the records strictly
-  (`coursework.grading.execution.records`) and puts the results together. It never runs or
-  unpickles anything of a student's, and never repeats it to the console;
+- this one, which is trusted: it starts warm parents, enforces time limits, reads the records
+  strictly (`coursework.grading.execution.records`) and combines the results. It never runs or
+  unpickles anything of a student's, and never repeats it on the console;
 - a warm parent for each worker (`coursework.grading.execution.warm_parent`), which only forks;
-- a child for each notebook, confined (`coursework.grading.execution.isolation`), in which the
-  cells run
-  (`coursework.grading.execution.notebook`).
+- a child for each notebook, confined (`coursework.grading.execution.isolation`), which runs the
+  cells (`coursework.grading.execution.notebook`).
 
-No verdict is made here, and no right answer is here: marks are decided elsewhere, from the results.
+No process here judges anything or has a right answer. Marks are decided elsewhere, from the
+results.
 
-A cell that ends or hangs its process costs only itself: what was recorded before is kept, and the
-notebook is run again without that cell, a limited number of times.
+A cell that ends or hangs its process costs only itself. Earlier records are kept, and the notebook
+runs again without that cell, up to a limit.
 """
 
 from __future__ import annotations
@@ -48,22 +47,28 @@ from coursework.grading.record import MISSING, Answer, Cell, Isolation, Result
 from coursework.grading.submissions.intake import CodeCell
 from coursework.grading.workers import side_by_side
 
-WAIT_FOR_START = 120  # seconds for a warm parent to load its libraries, on a machine that is busy
-WAIT_FOR_END = 30  # seconds for a killed notebook to be gone
-OUTSIDE = "outside"  # the folder of the file that the isolation is tried on
-# seconds in which records gather: to be woken for each takes both processes longer than the record
+# Seconds for a warm parent to load its libraries, on a machine that is busy.
+WAIT_FOR_START = 120
+# Seconds for a killed notebook to be gone.
+WAIT_FOR_END = 30
+# The folder of the file that the isolation is tested on.
+OUTSIDE = "outside"
+# Seconds in which records accumulate, since waking up for each takes both processes longer than the
+# record itself.
 PAUSE = 0.005
 DEEPEST_STEPS = 10
-MOST_UNKNOWN = 20  # names of questions that do not exist, kept of one notebook
+# The most names of questions that do not exist to keep from one notebook.
+MOST_UNKNOWN = 20
 NOT_RUN = Cell("not run")
-ATTEMPTS_OF_A_JOB = 3  # how often a job is tried when its worker dies under it
+# How many times a job is tried when its worker dies on it.
+ATTEMPTS_OF_A_JOB = 3
 
 
 class Job(TypedDict):
     """A notebook to be run, as JSON.
 
-    Of each question it says the answer's ``"variable"``, and the ``"calls"`` and ``"secret calls"``
-    of a function, as `coursework.grading.judging.marking.asked_of_sandbox` does. The
+    For each question, it has the answer's ``"variable"``, and the ``"calls"`` and ``"secret
+    calls"`` of a function, as in `coursework.grading.judging.marking.asked_of_sandbox`. The
     ``files`` beside it are in base64.
     """
 
@@ -74,29 +79,29 @@ class Job(TypedDict):
     files: NotRequired[Mapping[str, str]]
 
 
-#: What the warm parent says: that it is ready, or how a notebook's process ended.
+#: A message from the warm parent: that it is ready, or how a notebook's process ended.
 Message = TypedDict(
     "Message", {"ready": Report, "ended": dict[str, int], "scratch full": bool}, total=False
 )
 
 
 class WeakIsolation(RuntimeError):
-    """This machine cannot isolate student code well enough.
+    """An error because this machine cannot isolate student code well enough.
 
     The message lists what is missing and how to get it.
     """
 
 
 class WorkerDied(RuntimeError):
-    """The warm parent is gone."""
+    """An error because the warm parent has ended."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Limits:
-    """What one notebook may use. Seconds are of processor time unless they say wall.
+    """The limits of one notebook. Seconds are processor time unless they are wall time.
 
-    Wall times are for code that waits. The time in which it could have run and the machine was busy
-    with others does not count, so that load costs nobody an answer.
+    Wall times are for code that waits. Time in which the code could have run but the machine was
+    busy does not count, so that load costs nobody an answer.
     """
 
     cell_seconds: float = 20
@@ -104,17 +109,17 @@ class Limits:
     answer_seconds: float = 10
     answer_wall_seconds: float = 20
     notebook_seconds: float = 60
-    notebook_wall_seconds: float = 180  # for all runs of the notebook together
-    grace_seconds: float = 1  # wall, after a limit, before the process is killed
-    memory_bytes: int = 1 << 30  # beyond the libraries
+    notebook_wall_seconds: float = 180  # For all runs of the notebook together.
+    grace_seconds: float = 1  # Wall time after a limit before the process is killed.
+    memory_bytes: int = 1 << 30  # In addition to the libraries.
     file_bytes: int = 32 << 20
     scratch_bytes: int = 64 << 20
     open_files: int = 256
     threads: int = 64
-    runs: int = 8  # of one notebook, in each order
+    runs: int = 8  # Of one notebook, in each order.
 
     def for_child(self) -> LimitsOfChild:
-        """The limits in the words of the process that they bind."""
+        """Return the limits in the form that the confined process takes."""
         return {
             "cell": {"processor": self.cell_seconds, "wall": self.cell_wall_seconds},
             "answer": {"processor": self.answer_seconds, "wall": self.answer_wall_seconds},
@@ -128,16 +133,16 @@ class Limits:
 
 
 class Sandbox:
-    """One warm parent, isolated and tried, that runs one notebook at a time.
+    """One warm parent, isolated and tested, that runs one notebook at a time.
 
     Parameters
     ----------
     limits : Limits, optional
     allow_weak_isolation : bool
-        Run student code although some of what must be stopped is not. Every result says so.
+        Run student code although it can do some of what it must not. Every result says so.
     without : collection of str
-        Layers to leave out, of `coursework.grading.execution.isolation.LAYERS`; then the
-        isolation is weak.
+        Layers to leave out, of `coursework.grading.execution.isolation.LAYERS`; the isolation is
+        then weak.
 
     Raises
     ------
@@ -180,7 +185,7 @@ class Sandbox:
     # -- the warm parent
 
     def start(self) -> None:
-        """Start the warm parent and try its isolation."""
+        """Start the warm parent and test its isolation."""
         try:
             with contextlib.ExitStack() as stack:
                 self.report = self.launched(self.target(stack))
@@ -199,9 +204,7 @@ class Sandbox:
             )
 
     def target(self, stack: contextlib.ExitStack) -> Target:
-        """What the isolation is tried on: two ports and a local
-        socket of our own, and later a file.
-        """
+        """Return targets for testing the isolation: two ports and a local socket of our own."""
         tcp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
         udp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
         local = stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_STREAM))
@@ -219,7 +222,7 @@ class Sandbox:
         }
 
     def launched(self, target: Target) -> Report:
-        """Start the warm parent, in namespaces where they can be had; give its report."""
+        """Start the warm parent, in namespaces where possible, and return its report."""
         bubblewrap, why_not = shutil.which("bwrap"), "bubblewrap is not installed"
         if NAMESPACES in self.without:
             why_not = "switched off"
@@ -233,7 +236,7 @@ class Sandbox:
         return self.launched_by([], target, why_not)
 
     def launched_by(self, command: Sequence[str], target: Target, why_not: str = "") -> Report:
-        """Start the warm parent behind `command`; `why_not` says why it is in no namespaces."""
+        """Start the warm parent by `command`; `why_not` is why it is not in namespaces, if so."""
         self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         processes = os.open("/proc", os.O_RDONLY | os.O_DIRECTORY)
         self.errors = tempfile.TemporaryFile()
@@ -244,8 +247,8 @@ class Sandbox:
                 handles = (other.fileno(), processes)
                 self.process = subprocess.Popen(
                     [
-                        # First a process that removes the folder at the end,
-                        # also if this one is killed.
+                        # Start a process first that removes the folder at the end, even if this one
+                        # is killed.
                         sys.executable,
                         "-I",
                         "-S",
@@ -286,8 +289,8 @@ class Sandbox:
             os.close(processes)
         start = {
             "without": sorted(self.without),
-            # Not before there is somebody to tidy up: a folder that is
-            # open to all is not left behind.
+            # Make the file that is open to everybody only when a process is there that will remove
+            # it.
             "target": target | {"files": [file_outside(self.base)]},
             "base": self.base,
             "why no namespaces": why_not,
@@ -303,7 +306,7 @@ class Sandbox:
         return message["ready"]
 
     def last_error(self) -> str:
-        """The last line that the warm parent, never a student, wrote on its error stream."""
+        """Return the last line that the warm parent, never a student, wrote on its error stream."""
         if errors := self.errors:
             errors.seek(0)
             if lines := errors.read().decode(errors="replace").strip().splitlines():
@@ -312,7 +315,7 @@ class Sandbox:
 
     @property
     def connection(self) -> socket.socket:
-        """The way to the warm parent, which is there."""
+        """The connection to the warm parent."""
         if self.control is None:
             raise WorkerDied("the parent process of the sandbox has exited")
         return self.control
@@ -340,7 +343,7 @@ class Sandbox:
         return message
 
     def close(self) -> None:
-        """End the warm parent; with it ends all that it started."""
+        """End the warm parent, and with it everything that it started."""
         if self.control is not None:
             self.control.close()
         if self.process is not None:
@@ -356,7 +359,7 @@ class Sandbox:
 
     def remove_base(self) -> None:
         if self.base is not None:
-            # The process that waits for the end removes it too.
+            # The process that waits for the end removes it, too.
             with contextlib.suppress(FileNotFoundError):
                 scratch.remove_folder(self.base)
             self.base = None
@@ -364,9 +367,7 @@ class Sandbox:
     # -- one notebook
 
     def run(self, job: Job) -> Result:
-        """Run one notebook; give its result. A worker that dies is
-        replaced, and the job tried again.
-        """
+        """Run one notebook and return its result, replacing a worker that dies and trying again."""
         for _ in range(ATTEMPTS_OF_A_JOB):
             try:
                 if self.control is None:
@@ -379,14 +380,14 @@ class Sandbox:
         )
 
     def isolation_in_force(self) -> Isolation:
-        """The isolation, as every result records it."""
+        """Return the isolation as every result records it."""
         layers, not_stopped = self.report["layers"], self.report["not stopped"]
         in_force = tuple(layer for layer in LAYERS if layers[layer]["in force"])
         return Isolation(in_force, bool(not_stopped), tuple(not_stopped))
 
 
 class _Run:
-    """All runs of one notebook, and what came of them."""
+    """All runs of one notebook, and their results."""
 
     def __init__(self, sandbox: Sandbox, job: Job) -> None:
         self.sandbox = sandbox
@@ -427,13 +428,12 @@ class _Run:
         }
 
     def try_order_of_execution(self, answers: dict[str, Answer]) -> None:
-        """Fill in the answers that the notebook gives only in the
-        order in which its cells once ran.
-        """
+        """Fill in the answers that only the order in which the cells once ran gives."""
         cells = self.job["cells"]
         moments: list[int] = []
         last = 0
-        for cell in cells:  # one that was never run goes with the one above it
+        # Keep a cell that never ran with the one above it.
+        for cell in cells:
             count = cell.get("execution_count")
             last = count if type(count) is int and count > 0 else last
             moments.append(last)
@@ -448,7 +448,7 @@ class _Run:
             self.notes.append("works only out of order")
 
     def in_order(self, order: list[int]) -> tuple[dict[int, Cell], dict[str, Answer], bool]:
-        """Run in one order, without the cells that end the process, until it comes through."""
+        """Run in one order, leaving out cells that end the process, until it reaches the end."""
         cells: dict[int, Cell] = {}
         answers: dict[str, Answer] = {}
         skip: list[Step] = []
@@ -472,7 +472,8 @@ class _Run:
                 (step for step in reversed(once.blamed or once.steps) if step not in skip), None
             )
             if number and once.left_threads:
-                # Twice, in different cells: the blame is with threads that an earlier cell left.
+                # It happened twice, in different cells, so blame the threads that an earlier cell
+                # left.
                 skip, culprit = [], ["cell", once.left_threads[0]]
             if culprit is None:
                 break
@@ -490,7 +491,7 @@ class _Run:
 
 
 def has_not(answers: Mapping[str, Answer], question: str) -> bool:
-    """Whether there is no answer yet to a question: a blank is none."""
+    """Check whether a question has no answer yet; a blank is not an answer."""
     answer = answers.get(question, MISSING)
     return answer.outcome != "recorded" or answer.is_blank
 
@@ -531,8 +532,10 @@ class _Once:
         }
         self.records = records.Records(len(job["cells"]))
         self.process: int | None = None
-        self.kept_waiting = 0.0  # seconds in which the machine was busy with others
-        self.steps: list[Step] = []  # begun and not ended, outermost first
+        # Seconds in which the child could have run but the machine was busy.
+        self.kept_waiting = 0.0
+        # Steps that have begun and not ended, outermost first.
+        self.steps: list[Step] = []
         self.begun: list[float] = []
         self.deadlines: list[float] = []
         self.cells: dict[int, Cell] = {}
@@ -543,21 +546,23 @@ class _Once:
         self.finished = False
         self.done_by = math.inf
         self.killed_for: str | None = None
-        self.blamed: list[Step] = []  # the steps that were under way when it was killed
-        self.ending = "", ""  # the outcome, and the error
+        # The steps that were under way when it was killed.
+        self.blamed: list[Step] = []
+        # The outcome, and the error.
+        self.ending = "", ""
 
     def watch(self) -> None:
-        """Start the child, take its records, keep its time; return when all of it is gone."""
+        """Start the child, read its records and enforce its time limits until all of it is gone."""
         with contextlib.ExitStack() as stack:
-            # What it gets and what it gives; the secret calls are written
-            # when it has nothing more to give.
+            # The child's input and output. We write the secret calls when it has nothing more to
+            # hand in.
             ends = [os.memfd_create("job"), *os.pipe(), *os.pipe()]
             handles: list[IO[bytes]] = [
                 stack.enter_context(open(end, mode, 0))
                 for end, mode in zip(ends, ("rb+", "rb", "wb", "rb", "wb"), strict=True)
             ]
             job, reading, writing, secret, self.secret = handles
-            # To a notebook that reads it too early it is empty.
+            # A notebook that reads it too early finds it empty.
             os.set_blocking(secret.fileno(), False)
             job.write(self.job)
             job.seek(0)
@@ -571,9 +576,7 @@ class _Once:
         self.conclude(ended)
 
     def tell_the_secret(self) -> None:
-        """Give the secret calls; what does not fit into the pipe at once
-        is not given, and nobody waits.
-        """
+        """Send the secret calls without waiting, dropping what does not fit into the pipe."""
         data = json.dumps(self.secret_calls).encode() if self.secret_calls else b""
         with contextlib.suppress(OSError):
             os.set_blocking(self.secret.fileno(), False)
@@ -587,7 +590,8 @@ class _Once:
         waiting = select.poll()
         waiting.register(control, select.POLLIN)
         last_moment = math.inf
-        look_again: float | None = 0.0  # None where there is nothing more to be read
+        # ``None`` if there is nothing more to read.
+        look_again: float | None = 0.0
         while True:
             now = time.monotonic()
             if self.killed_for is None:
@@ -614,12 +618,13 @@ class _Once:
                     look_again = time.monotonic() + PAUSE if self.take(reading) else None
                 elif handle == control.fileno():
                     ended = self.sandbox.receive(0)
-                    while self.take(reading):  # what it wrote last; nobody is left to write more
+                    # Read its last output; nobody is left to write more.
+                    while self.take(reading):
                         pass
                     return ended
 
     def take(self, reading: int) -> bool:
-        """Take what the child has written; False when there is no more to come."""
+        """Read what the child has written; return False when no more will come."""
         data = os.read(reading, 1 << 18)
         if not self.records.too_many:
             for record in self.records.feed(data):
@@ -627,9 +632,7 @@ class _Once:
         return bool(data)
 
     def give_back(self) -> bool:
-        """Put all deadlines off by the time in which the machine was busy
-        with others; whether there was any.
-        """
+        """Extend all deadlines by the time in which the machine was busy; return False if none."""
         if self.process is None:
             warm_parent = self.sandbox.process
             self.process = running_below(warm_parent.pid if warm_parent else None)
@@ -646,7 +649,8 @@ class _Once:
     def next_deadline(self) -> tuple[float, str]:
         if self.finished and self.steps:
             return self.deadlines[-1], "done"
-        if self.finished:  # it only has to exit now
+        # It only has to exit now.
+        if self.finished:
             return self.done_by, "done"
         if self.deadlines and self.deadlines[-1] < self.notebook_deadline:
             return self.deadlines[-1], "timeout"
@@ -669,7 +673,7 @@ class _Once:
                 not ("begin" in record or "end" in record)
                 or (record.get("begin") or record["end"])[0] != "answer"
             ):
-                # it knows the secret calls now: nothing that it says of anything else is heard
+                # It knows the secret calls now, so ignore records about anything else.
                 return
         if "begin" in record:
             step = record["begin"]
@@ -687,7 +691,8 @@ class _Once:
                 self.steps.pop()
                 self.deadlines.pop()
                 begun = self.begun.pop()
-                if self.deadlines:  # the reading of an answer is not the cell's time
+                # Reading an answer does not count as the cell's time.
+                if self.deadlines:
                     self.deadlines[-1] += now - begun
             _, which = record["end"]
             if isinstance(which, int):
@@ -716,7 +721,7 @@ class _Once:
             self.tell_the_secret()
 
     def conclude(self, ended: Message) -> None:
-        """Name how the child ended."""
+        """Determine how the child ended."""
         how = ended["ended"]
         if how.get("code") == NOT_CONFINED and not self.records.received:
             raise WeakIsolation(
@@ -741,7 +746,7 @@ class _Once:
 
 
 def file_outside(base: str) -> str:
-    """A file that everybody may change, for the isolation to be tried on."""
+    """Make a file that everybody may change, for testing the isolation."""
     outside = Path(base, OUTSIDE)
     outside.mkdir()
     file = outside / "file"
@@ -752,7 +757,7 @@ def file_outside(base: str) -> str:
 
 
 def given_up(job: Job, why: str) -> Result:
-    """The result of a notebook that could not be run: a person must look."""
+    """Return the result of a notebook that could not be run, which a person must look at."""
     return {
         "id": job["id"],
         "finished": False,
@@ -767,16 +772,12 @@ def given_up(job: Job, why: str) -> Result:
 
 
 def new_user() -> int:
-    """A user that nobody else is: root gives the code to it, and its
-    limit of threads counts only these.
-    """
+    """Return a user ID that nobody else has, so that a limit counts only its own threads."""
     return 1_900_000_000 + random.SystemRandom().randrange(10**8)
 
 
 def running_below(process: int | None) -> int | None:
-    """The number of the last process below another: a notebook's, which has none
-    below itself; ``None`` if hidden.
-    """
+    """Return the ID of a process's last descendant, the notebook's; ``None`` if hidden."""
     with contextlib.suppress(OSError, ValueError, IndexError):
         while children := Path(f"/proc/{process}/task/{process}/children").read_text().split():
             process = int(children[-1])
@@ -785,9 +786,7 @@ def running_below(process: int | None) -> int | None:
 
 
 def kept_waiting(process: int | None) -> float:
-    """The seconds for which a process could have run and others did;
-    0 where the system does not tell.
-    """
+    """Return the seconds in which a process could have run but others did; 0 if unknown."""
     try:
         return int(Path(f"/proc/{process}/schedstat").read_text().split()[1]) / 1e9
     except (OSError, ValueError, IndexError):
@@ -795,7 +794,7 @@ def kept_waiting(process: int | None) -> float:
 
 
 def threads_of(user: int) -> int:
-    """How many threads `user` has on this machine: they count against a limit of threads."""
+    """Return the number of threads of `user` on this machine, which count towards a limit."""
     total = 0
     for status in Path("/proc").glob("[0-9]*/status"):
         with contextlib.suppress(OSError, ValueError, KeyError):
@@ -813,7 +812,7 @@ def run_notebooks(
     allow_weak_isolation: bool = False,
     without: Collection[str] = (),
 ) -> Iterator[Result]:
-    """Run notebooks on several workers, each a process of its own; give the results as they come.
+    """Run notebooks on several workers, each a process of its own, and yield the results.
 
     Parameters
     ----------
@@ -825,18 +824,18 @@ def run_notebooks(
              "questions": {name: {"variable": text or None,
                                   "calls": {"arguments": [[...], ...], "as": "lists" or "arrays"} or
                                   None, "secret calls": the same, optional}},
-             "files": {name: base64 text},  # optional, beside it
-             "seed": number}                # optional, 0
+             "files": {name: base64 text},  # optional, beside it "seed": number}                #
+             optional, 0
     workers : int
-        How many notebooks run at a time; each worker is a warm parent of its own.
+        The number of notebooks to run at a time; each worker is a warm parent of its own.
     limits, allow_weak_isolation, without
         As for `Sandbox`.
 
     Yields
     ------
     dict
-        One result for each job, in the order in which they are ready; each names its job by `id`
-        and does not depend on the others or on the number of workers.
+        One result for each job, as it is ready. It names its job by `id` and depends neither on the
+        others nor on the number of workers.
 
     Raises
     ------

@@ -1,11 +1,10 @@
-"""Scratch folders on disk, for where a notebook cannot have one in memory: measured, and emptied.
+"""Scratch folders on disk, measured and emptied, where a notebook cannot have one in memory.
 
 What a student leaves behind may be hostile: folders nested a hundred thousand deep, without
-permissions, links to elsewhere. Nothing here follows a link or recurses.
+permissions, or links elsewhere. Nothing here follows a link or recurses.
 
-Run as a program, with a folder and a command, this starts the command, waits for its end and
-removes the folder: whoever gave the command may be killed meanwhile, and the command may see
-nothing of the folder.
+As a program, given a folder and a command, this starts the command, waits for its end and removes
+the folder, since the caller may be killed meanwhile and the command may not see the folder.
 """
 
 import contextlib
@@ -17,14 +16,14 @@ _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
 
 
 def remove_folder(path: str) -> None:
-    """Remove a folder and all in it."""
+    """Remove a folder and everything in it."""
     top = os.open(path, _FOLDER)
     try:
         while names := os.listdir(top):
             for name in names:
                 if _unlinked(name, top):
                     continue
-                # A folder: empty it of files, move its folders up here, and remove it.
+                # For a folder, delete its files, move its folders up here, and remove it.
                 inner = _opened(name, top)
                 try:
                     for child in os.listdir(inner):
@@ -55,12 +54,13 @@ def _unlinked(name: str, folder: int) -> bool:
 
 
 def used_bytes(path: str, most: int) -> int:
-    """The space that the files under `path` take; counting stops when it is more than `most`."""
+    """Return the bytes that the files under `path` take; stop counting above `most`."""
     total, folders = 0, [path]
     while folders and total <= most:
         with contextlib.suppress(OSError), os.scandir(folders.pop()) as entries:
             for entry in entries:
-                total += 512  # a file of no length takes room too
+                # An empty file takes space, too.
+                total += 512
                 with contextlib.suppress(OSError):
                     total += entry.stat(follow_symlinks=False).st_blocks * 512
                     if entry.is_dir(follow_symlinks=False):
@@ -71,11 +71,11 @@ def used_bytes(path: str, most: int) -> int:
 
 
 def main(folder: str, *command: str) -> int:
-    """Run a command, and remove a folder when it has ended; give what the command ended with."""
+    """Run a command, remove a folder when it has ended, and return its exit code."""
     child = os.fork()
     if child == 0:
         os.execv(command[0], command)
-    # The handles are the command's: held here as well, its end would not be seen by others.
+    # The handles belong to the command. If this process held them, others would not see its end.
     os.closerange(3, 1 << 16)
     status = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
     with contextlib.suppress(OSError):

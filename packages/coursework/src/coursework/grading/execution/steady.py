@@ -1,9 +1,8 @@
-"""Runs a command at the same addresses each time: some of what a
-notebook works out depends on them.
+"""Start of a command at the same addresses each time, on which some results may depend.
 
-The system forgets the wish where a program gains rights, and counts root's as gained wherever root
-could have more of them than it has: within bubblewrap. So what is not there is given up first, and
-the wish made then. A container may forbid it; then addresses stay as they are.
+The kernel drops the setting when a program gains rights, and treats root's as gained wherever root
+could have more than it has, such as within bubblewrap. So we first give up the missing rights and
+then make the setting. A container may forbid it; then the addresses vary.
 """
 
 import ctypes

@@ -1,12 +1,12 @@
 """The system calls that student code may make: a seccomp filter, written for x86-64 and ARM64.
 
-What is not on the list is refused. The list is what computing needs: memory, threads, time,
-files (which files is decided elsewhere). It holds no socket, no new process, no other program,
-no other process's memory or signals, no namespaces, no change of modes, owners or limits, and no
-memory outside the process (shared segments, anonymous files), so that the resource limits of one
-process are the limits of the notebook.
+The filter refuses what is not on the list. The list has what computing needs: memory, threads, time
+and files (which files is decided elsewhere). It has no socket, new process, other program, other
+process's memory or signals, namespace, change of modes, owners or limits, and no memory outside the
+process (shared segments, anonymous files). The resource limits of one process are thus the limits
+of the notebook.
 
-What it does not give: it sees numbers, not names, so it cannot tell one file from another.
+The filter sees numbers, not names, so it cannot tell one file from another.
 """
 
 import ctypes
@@ -88,7 +88,7 @@ ALLOWED = {
     "brk": (12, 214),
     "msync": (26, 227),
     "mincore": (27, 232),
-    # its own signals, time and threads
+    # Its own signals, time and threads
     "rt_sigaction": (13, 134),
     "rt_sigprocmask": (14, 135),
     "rt_sigreturn": (15, 139),
@@ -119,7 +119,7 @@ ALLOWED = {
     "waitid": (247, 95),
     "exit": (60, 93),
     "exit_group": (231, 94),
-    # asking who and where it is
+    # Its own identity and surroundings
     "getpid": (39, 172),
     "gettid": (186, 178),
     "getppid": (110, 173),
@@ -141,26 +141,26 @@ ALLOWED = {
     "getrandom": (318, 278),
     "getpriority": (140, 141),
 }
-# Allowed for these values of one argument: name: (numbers, which argument, values).
+# Calls allowed for some values of one argument: name: (numbers, which argument, values).
 ALLOWED_FOR = {
-    # duplicate, close-on-exec, status flags: not locks on shared files, not signals by F_SETOWN
+    # Duplicate, close-on-exec and status flags, but no locks on shared files or signals by F_SETOWN
     "fcntl": ((72, 25), 1, (0, 1, 2, 3, 4, 1030, 1032)),
-    # is it a terminal, how many bytes wait, close-on-exec, non-blocking
+    # Whether it is a terminal, how many bytes wait, close-on-exec, non-blocking
     "ioctl": ((16, 29), 1, (0x5401, 0x802C542A, 0x5413, 0x541B, 0x5421, 0x5450, 0x5451)),
-    # names of threads and of memory areas
+    # Names of threads and of memory areas
     "prctl": ((157, 167), 0, (3, 15, 16, 23, 0x53564D41)),
 }
-ONLY_ITSELF = {"kill": (62, 129), "tgkill": (234, 131)}  # the first argument is its own number
+ONLY_ITSELF = {"kill": (62, 129), "tgkill": (234, 131)}  # The first argument is its own ID.
 CLONE, PRLIMIT, SECCOMP = (56, 220), (302, 261), (317, 277)
-CLONE_THREAD, CLONE_NEW = 0x00010000, 0x7E020080  # the second: every kind of new namespace
-# From this number on, all processors share the numbers, and C libraries know how to do without.
+CLONE_THREAD, CLONE_NEW = 0x00010000, 0x7E020080  # The second: every kind of new namespace.
+# From this number on, all processors share the numbers, and C libraries work without the calls.
 FIRST_NEW = 424
 
 LOAD, JUMP_EQUAL, JUMP_AT_LEAST, JUMP_ANY_BIT, RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
 ALLOW, REFUSE, UNKNOWN = 0x7FFF0000, 0x00050000 | errno.EPERM, 0x00050000 | errno.ENOSYS
 KILL = 0x80000000
 NUMBER, ARCHITECTURE, ARGUMENTS = 0, 4, 16
-# machine: (the kernel's name for it, the column of the tables above)
+# ~machine: (the kernel's name for it, the column of the tables above)
 MACHINES = {"x86_64": (0xC000003E, 0), "aarch64": (0xC00000B7, 1)}
 
 
@@ -169,7 +169,7 @@ class FilterProgram(ctypes.Structure):
 
 
 def program(own_number: int, machine: str | None = None) -> bytes:
-    """The filter for the process `own_number`, as the kernel's bytes (8 for each instruction)."""
+    """Return the filter for the process `own_number`, 8 bytes for each instruction."""
     machine = machine or platform.machine()
     if machine not in MACHINES:
         raise OSError(errno.ENOSYS, f"there is no system-call filter for {machine}")
@@ -204,7 +204,7 @@ def program(own_number: int, machine: str | None = None) -> bytes:
             numbers[column],
             [load(0), (JUMP_EQUAL, own_number, 0, 1), (RETURN, ALLOW), (RETURN, REFUSE)],
         )
-    # A thread yes, a process or a new namespace no.
+    # Allow a thread, but no process or new namespace.
     for_call(
         CLONE[column],
         [
@@ -215,7 +215,8 @@ def program(own_number: int, machine: str | None = None) -> bytes:
             (RETURN, REFUSE),
         ],
     )
-    # Its own limits may be asked for, not changed: the third argument (the new limits) is null.
+    # Its own limits may be read but not changed, so the third argument (the new limits) must be
+    # null.
     for_call(
         PRLIMIT[column],
         [
@@ -229,7 +230,7 @@ def program(own_number: int, machine: str | None = None) -> bytes:
             (RETURN, REFUSE),
         ],
     )
-    # 0x40000000 marks the x32 calls of x86-64: refused like everything not named above.
+    # 0x40000000 marks the x32 calls of x86-64, which are refused like everything not named above.
     add(JUMP_AT_LEAST, FIRST_NEW, 0, 2)
     add(JUMP_AT_LEAST, 0x40000000, 1, 0)
     add(RETURN, UNKNOWN)
@@ -238,14 +239,14 @@ def program(own_number: int, machine: str | None = None) -> bytes:
 
 
 def install() -> None:
-    """Put the filter on this process, for good. `no_new_privs` must be set."""
+    """Put the filter on this process for good. `no_new_privs` must be set."""
     library = ctypes.CDLL(None, use_errno=True)
     code = program(os.getpid())
     buffer = ctypes.create_string_buffer(code, len(code))
     description = FilterProgram(len(code) // 8, ctypes.addressof(buffer))
     number = SECCOMP[MACHINES[platform.machine()][1]]
-    # Mode 1: a filter. Flag 4: without a slower processor mode, meant for code that shares a
-    # process with secrets; there are none in this one.
+    # Mode 1 is a filter. Flag 4 avoids a slower processor mode for code that shares its process
+    # with secrets, of which this one has none.
     if library.syscall(number, 1, 4, ctypes.byref(description)) != 0:
         error = ctypes.get_errno()
         raise OSError(error, f"seccomp: {os.strerror(error)}")

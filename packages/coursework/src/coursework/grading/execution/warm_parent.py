@@ -1,10 +1,10 @@
 """The warm parent: a process that has loaded the libraries and forks one child for each notebook.
 
-It is started by `exec` with an empty environment. It holds no answer and no student's work: the
+It is started by `exec` with an empty environment. It has no answer and no student's work. The
 notebook goes to the child, and the records come back, through handles that this process passes on
 without reading, so a child that searches its memory finds nothing of its neighbours.
 
-It speaks with the process that started it in JSON, one message each:
+It exchanges single messages in JSON with the process that started it:
 
     in   {"start": {...}}                      once: how to isolate, what to try
     out  {"ready": report}
@@ -43,15 +43,16 @@ from coursework.grading.execution.isolation import (
     Target,
 )
 
-# The handles that a notebook's process has, beside input and output to nowhere; the last is where
-# it learns of the secret calls, at its end.
+# The handles of a notebook's process, besides discarded input and output. It receives the secret
+# calls from the last at its end.
 JOB, RECORDS, SECRET = 3, 4, 5
 NOT_CONFINED = 120
-LOOK_EVERY = 0.05  # seconds between two looks at how full a scratch folder on disk is
+# Seconds between two checks of how full a scratch folder on disk is.
+LOOK_EVERY = 0.05
 LONGEST_MESSAGE = 1 << 16
 LARGE_PAGE, MADV_COLLAPSE = 2 << 20, 25
 
-#: How to isolate, and what to try.
+#: How to isolate, and what to test.
 Start = TypedDict(
     "Start",
     {
@@ -60,26 +61,26 @@ Start = TypedDict(
         "base": str,
         "threads in use": int,
         "user": int,
-        "why no namespaces": str,  # empty within namespaces
+        "why no namespaces": str,  # Empty within namespaces.
     },
 )
 
 
 class Run(TypedDict):
-    """A notebook that is to be run."""
+    """A notebook to be run."""
 
     limits: LimitsOfChild
 
 
 class Tried(TypedDict, total=False):
-    """What came of trying the layers: one of these."""
+    """The result of testing the layers, one of these."""
 
     succeeded: list[str]
     failed: str
 
 
 class Message(TypedDict, total=False):
-    """What comes in: one of these."""
+    """A message from outside, one of these."""
 
     start: Start
     run: Run
@@ -99,14 +100,14 @@ def load_libraries() -> None:
             importlib.import_module(package)
     with contextlib.suppress(ImportError):
         import matplotlib.pyplot  # noqa: F401
-    # What SymPy and the answers' reader import only when first used.
+    # Load what SymPy and the reader of answers import only on first use.
     angle = sympy.Symbol("angle")
     source, target = mechanics.ReferenceFrame("N"), mechanics.ReferenceFrame("A")
     target.orient_axis(source, source.z, angle)
     sympy.simplify(sympy.trigsimp(target.dcm(source) * target.dcm(source).T))
     third = sympy.Rational(1, 3)
     for inverse in (sympy.asin, sympy.acos, sympy.atan, sympy.acot, sympy.asec, sympy.acsc):
-        # Looks it up in a table of known values, which takes ten milliseconds to make.
+        # This builds a table of known values, which takes ten milliseconds.
         inverse(third)
     sympy.atan2(third, 1), sympy.cos(sympy.pi / 5)
     sympy.lambdify(angle, sympy.sin(angle), "numpy")(numpy.zeros(1))
@@ -114,20 +115,17 @@ def load_libraries() -> None:
 
 
 def about_itself(processes: int, name: str) -> str:
-    """A file of this process's own in /proc, which is a handle
-    here: the folder may be out of sight.
-    """
+    """Read this process's own file in /proc by a handle, since the folder may be hidden."""
     with open(os.open(f"self/{name}", os.O_RDONLY, dir_fd=processes)) as file:
         return file.read()
 
 
 def into_large_pages(maps: str) -> None:
-    """Have the kernel gather this process's memory in large pages, of which it
-    copies one entry for each to a child.
+    """Have the kernel move this process's memory to large pages, since forks copy their table.
 
-    Of small ones there are 500 times as many, and a child would take milliseconds longer to be made
-    and to end. ``maps`` is what the system says of the memory. Where it cannot be done, everything
-    works as before.
+    With small pages the table has 500 times as many entries, and forking and ending a child would
+    take milliseconds longer. ``maps`` is the system's map of the memory. Where this fails,
+    everything works as before.
     """
     madvise = ctypes.CDLL(None).madvise
     madvise.argtypes = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int
@@ -142,7 +140,7 @@ def into_large_pages(maps: str) -> None:
 
 
 class WarmParent:
-    """What the children need to be started, and how they are tried out, watched and ended."""
+    """The state for starting children, and how they are tested, watched and ended."""
 
     def __init__(
         self,
@@ -156,10 +154,10 @@ class WarmParent:
         self.target = start["target"]
         self.readable = readable
         self.why_no_namespaces = start["why no namespaces"]
-        # What a process does in namespaces, before it is known whether they stop enough.
+        # A process in namespaces does these, even before we know whether they stop enough.
         self.own_scratch = self.first_of_its_namespace = not self.why_no_namespaces
         self.base = isolation.SCRATCH if self.own_scratch else start["base"]
-        # Namespaces of an ordinary user count their own threads only.
+        # Namespaces of an ordinary user count only their own threads.
         self.threads_in_use = 0 if self.own_scratch else start["threads in use"]
         self.user = isolation.user_for_students(start["user"], about_itself(processes, "uid_map"))
         if not self.first_of_its_namespace:
@@ -179,9 +177,7 @@ class WarmParent:
     # -- one child
 
     def new_scratch(self, layers: Collection[str]) -> str:
-        """The next child's scratch folder: memory that it mounts
-        over the base, or a folder in it.
-        """
+        """Make the next child's scratch folder: memory mounted over the base, or a folder in it."""
         if self.own_scratch and NAMESPACES in layers:
             return self.base
         self.count += 1
@@ -192,7 +188,8 @@ class WarmParent:
         return folder
 
     def remove_scratch(self, folder: str) -> None:
-        if folder != self.base:  # memory went with its process
+        # The memory went with its process.
+        if folder != self.base:
             scratch.remove_folder(folder)
 
     def confine(self, layers: Collection[str], limits: LimitsOfChild, folder: str) -> None:
@@ -208,14 +205,15 @@ class WarmParent:
         )
 
     def end_all(self, child: int) -> int:
-        """Kill the child and everything it may have left behind. The only one who reaps."""
+        """Kill and reap the child and everything that it may have left. Nothing else reaps."""
         with contextlib.suppress(ProcessLookupError):
             os.kill(child, signal.SIGKILL)
         status = os.waitpid(child, 0)[1]
         while True:
             if self.first_of_its_namespace:
                 with contextlib.suppress(ProcessLookupError):
-                    os.kill(-1, signal.SIGKILL)  # all of this namespace, at one stroke
+                    # This kills all of the namespace at once.
+                    os.kill(-1, signal.SIGKILL)
             else:
                 for orphan in self.children():
                     with contextlib.suppress(ProcessLookupError):
@@ -230,12 +228,12 @@ class WarmParent:
         path = Path(f"/proc/self/task/{os.getpid()}/children")
         return [int(number) for number in path.read_text().split()] if path.exists() else []
 
-    # -- trying the layers
+    # -- testing the layers
 
     def tried(
         self, layers: Collection[str], attempts: Sequence[str] | None, target: Target
     ) -> list[str]:
-        """Confine a child by `layers`; give the names of the attempts that succeeded there."""
+        """Confine a child by `layers`, and return the names of the attempts that succeeded."""
         folder = self.new_scratch(layers)
         reading, writing = os.pipe()
         child = os.fork()
@@ -267,7 +265,7 @@ class WarmParent:
 
     @staticmethod
     def cannot_work() -> list[str]:
-        """What a notebook needs and does not have under all layers together."""
+        """Return what a notebook needs but lacks under all layers together."""
         import sympy
 
         problems = []
@@ -289,7 +287,7 @@ class WarmParent:
         return problems
 
     def report(self) -> Report:
-        """Try every layer alone, then all that are in force together."""
+        """Test every layer on its own, then all that are in force together."""
         self.target["threads in use"] = self.threads_in_use
         with self.file_within() as own:
             everywhere: Target = {**self.target, "files": [*self.target["files"], own]}
@@ -308,9 +306,7 @@ class WarmParent:
 
     @contextlib.contextmanager
     def file_within(self) -> Iterator[str]:
-        """A file that everybody may change. Namespaces hide the other one that
-        it is tried on from all layers.
-        """
+        """Make a public file inside the namespaces, which hide the other one from all layers."""
         outside = os.path.join(self.base, f"inside namespaces, {self.user}")
         os.mkdir(outside, 0o777)
         own = os.path.join(outside, "file")
@@ -321,7 +317,7 @@ class WarmParent:
         scratch.remove_folder(outside)
 
     def not_stopped(self, target: Target) -> list[str]:
-        """What the layers in force do not stop together."""
+        """Return what the layers in force do not stop together."""
         try:
             return self.tried(self.layers, None, target)
         except IsolationError as error:
@@ -332,7 +328,7 @@ class WarmParent:
             return "switched off"
         if layer == NAMESPACES and self.why_no_namespaces:
             return self.why_no_namespaces
-        # A limit binds users, and root is none: it is tried as the user it is for.
+        # Limits do not bind root, so test them as the user they are for.
         alone = [LIMITS, PRIVILEGES] if layer == LIMITS else [layer]
         try:
             succeeded = self.tried(alone, isolation.must_stop(layer), target)
@@ -351,7 +347,8 @@ class WarmParent:
             if message is None:
                 return
             if "run" not in message:
-                continue  # a late "kill": what it was meant for has ended
+                # This is a late "kill", for a process that has ended.
+                continue
             send(self.control, self.run(message["run"], handles))
 
     def run(self, run: Run, handles: Sequence[int]) -> dict[str, object]:
@@ -375,32 +372,33 @@ class WarmParent:
         return {"ended": how, "scratch full": full}
 
     def wait(self, child: int, folder: str | None, most_bytes: int) -> bool:
-        """Wait until the child has ended, must be killed, or has filled
-        its folder on disk (then: True).
-        """
+        """Wait until the child ends, has to end, or fills its folder on disk (returns True)."""
         handle = os.pidfd_open(child)
         watched = [handle, self.control.fileno()]
         try:
             while True:
                 ready, _, _ = select.select(watched, [], [], LOOK_EVERY if folder else None)
                 if ready:
-                    return False  # it ended, or whatever came in, or nobody is there: it is to end
+                    # The child ended, a message came, or nobody is there; in any case it has to
+                    # end.
+                    return False
                 if folder and scratch.used_bytes(folder, most_bytes) > most_bytes:
                     return True
         finally:
             os.close(handle)
 
     def be_notebook(self, parent: int, run: Run, handles: Sequence[int], folder: str) -> NoReturn:
-        """In the child: give up all that a notebook must not have, and run it. Does not return."""
+        """Give up, in the child, what a notebook must not have, and run it. Does not return."""
         code = NOT_CONFINED
         try:
-            # Away from the low numbers first, so that none is written over.
+            # Move the handles away from the low numbers first, so that none is overwritten.
             handles = [os.dup2(handle, 200 + order, False) for order, handle in enumerate(handles)]
             for handle, place in zip(handles, (JOB, RECORDS, SECRET), strict=True):
                 os.dup2(handle, place, False)
             os.closerange(SECRET + 1, 1 << 20)
             self.confine(self.layers, run["limits"], folder)
-            os.dup2(1, 2)  # from here on nothing is heard of it but records
+            # From here on, only records leave the process.
+            os.dup2(1, 2)
             if os.getppid() != parent:
                 raise ProcessLookupError("the parent process of the sandbox exited too early")
             os.environ.update(HOME=folder, TMPDIR=folder, MPLCONFIGDIR=folder)
@@ -416,7 +414,7 @@ class WarmParent:
 
 
 def receive(control: socket.socket) -> tuple[Message | None, list[int]]:
-    """The next message and its handles; (None, []) when the other side is gone."""
+    """Return the next message and its handles; (None, []) when the other side is gone."""
     data, handles, _, _ = socket.recv_fds(control, LONGEST_MESSAGE, 3)
     return (json.loads(data) if data else None), handles
 
@@ -429,12 +427,14 @@ def main() -> None:
     control = socket.socket(fileno=int(sys.argv[1]))
     message, _ = receive(control)
     if message is None:
-        return  # whoever started it has ended
+        # The process that started it has ended.
+        return
     readable = isolation.readable_paths()
     server = WarmParent(control, int(sys.argv[2]), message["start"], readable)
     report = server.report()
     gc.collect()
     gc.freeze()
-    with contextlib.suppress(ConnectionError):  # whoever started it may have ended
+    # The process that started it may have ended.
+    with contextlib.suppress(ConnectionError):
         send(control, {"ready": report})
         server.serve()
