@@ -1,1 +1,1 @@
-"""Handed on: marks for the systems that others keep."""
+"""Export of marks to other systems."""

@@ -1,9 +1,8 @@
-"""Hands marks on: into the gradebook that the teacher exported, or as
-nbgrader and Gradescope want them.
+"""Export of marks to the gradebook that an instructor exported, to nbgrader and to Gradescope.
 
-A gradebook is filled in place: only the cells of one column change, and every other byte, with its
-order, quotation marks and line ends, stays as the system wrote it, so that the system takes it
-back. Nothing that a student wrote gets into it.
+We fill a gradebook in place. Only the cells of one column change, and every other byte, with the
+order, quotation marks and line ends, stays as the system wrote it, so that the system accepts it.
+Nothing that a student wrote gets into it.
 """
 
 import datetime
@@ -45,34 +44,37 @@ NBGRADER = (
 
 
 class CannotExport(ValueError):
-    """Marks cannot be handed on; the message says what is missing."""
+    """An error for marks that cannot be exported; the message says what is missing."""
 
 
 class Marks:
-    """The marks that were given, as the journal has them, by the rules of the term: lateness costs
-    what they say, who is excused has no points, and members of a group have those of the group.
+    """The marks that were given, as the journal has them, by the rules of the term.
+
+    Lateness has its cost, students who are excused have no points, and members of a group have
+    those of the group.
 
     Parameters
     ----------
     store : Store
     assignment : str, optional
-        If there is more than one.
+        Needed if there is more than one.
     term : Term, optional
-        That of the folder, if none is given.
+        By default, the term in the folder.
     as_of : datetime, optional
-        As they had been given then, and what was due; what was handed in is that of the records.
+        The time for which to take the marks and due dates. What was handed in is that of the
+        records.
 
     Attributes
     ----------
     records : list of Record
     given : dict
-        What was given last, by student and assignment.
+        The marks that were given last, by student and assignment.
     students : dict
         The records of each student.
     missing : list of str
-        Who handed in nothing of the one assignment, though it was due.
+        Students who handed in nothing for the one assignment, although it was due.
     behind : int
-        Of how many records something that people decided is not in the marks yet.
+        The number of records with decisions that are not in the marks yet.
     """
 
     def __init__(
@@ -103,7 +105,7 @@ class Marks:
         if not self.records:
             named = f" of {assignment!r}" if assignment else ""
             raise CannotExport(f"There are no marks{named} in {store.folder}.")
-        # Who has another name by now has a record that was put aside.
+        # A student who was renamed has a record that was set aside.
         aside = store.folder / "put-aside"
         if lost := [
             key
@@ -140,7 +142,7 @@ class Marks:
 
     @property
     def assignment(self) -> str:
-        """The one assignment: marks of several are not added up for a column.
+        """The one assignment, since marks of several are not added up for a column.
 
         Raises
         ------
@@ -163,7 +165,7 @@ class Marks:
 
     @property
     def damaged(self) -> list[str]:
-        """Who is known to have handed in nothing but what cannot be graded."""
+        """The students who are known to have handed in only files that cannot be graded."""
         return [student for (student, _), one in self.results.items() if one.state == DAMAGED]
 
     @property
@@ -171,7 +173,7 @@ class Marks:
         return [student for (student, _), one in self.results.items() if one.state == EXCUSED]
 
     def mark(self, student: str) -> Given:
-        """What was given for the one assignment."""
+        """Return the student's mark for the one assignment."""
         return self.given[self.term.group_of(student, self.assignment), self.assignment]
 
     def points(self, student: str) -> float:
@@ -179,7 +181,7 @@ class Marks:
         return (self.mark(student).points - result.held_back) * (1 - result.penalty)
 
     def appeals(self, student: str) -> list[str]:
-        """The questions of a student against whose marks an appeal is open."""
+        """Return the questions for which a student has an open appeal."""
         return [
             question
             for (whose, assignment, question), appeals in self.standing.appeals.items()
@@ -197,18 +199,18 @@ class Marks:
         return own
 
 
-# --- a table whose every byte is kept -----------------------------------------------------------
+# --- a table that keeps every byte --------------------------------------------------------------
 
 
 class Field(NamedTuple):
-    """A cell: what it says, and how that is written."""
+    """A cell: its contents, and how they are written."""
 
     says: str
     written: str
 
 
 class Gradebook:
-    """A table of a learning management system, of which cells can be changed one at a time."""
+    """A learning management system's table, in which single cells can be changed."""
 
     def __init__(self, data: bytes, names: Mapping[str, str] | None = None) -> None:
         self.encoding, self.mark = encoding_of(data)
@@ -231,7 +233,7 @@ class Gradebook:
             )
 
     def column(self, *names: str) -> int | None:
-        """The number of the first column that has one of these names; ``None`` if there is none."""
+        """Return the index of the first column with one of these names, or ``None``."""
         lower = [self.ours.get(name.casefold(), name.lower()) for name in self.header]
         return next((lower.index(name) for name in names if name in lower), None)
 
@@ -253,7 +255,7 @@ class Gradebook:
 
 
 def _split(text: str, delimiter: str) -> list[tuple[list[Field], str]]:
-    """Lines of fields, and what ends each line."""
+    """Split a table into lines of fields, each with its line end."""
     pattern = re.compile(
         r'("(?:[^"]|"")*"[^%s\r\n]*|[^%s\r\n]*)(%s|\r\n|\n|\r|$)' % ((re.escape(delimiter),) * 3)
     )
@@ -288,20 +290,20 @@ def place_of_filled(path: str | Path, filled: str | Path | None = None) -> Path:
 
 
 class System(NamedTuple):
-    """How the gradebook of a system is laid out; names of columns are those of English.
+    """The layout of a system's gradebook, with the English names of columns.
 
     Attributes
     ----------
     name : str
     has : tuple of tuples of str
-        Of each of these one column is there, or begins so.
+        Alternatives, one of which is, or begins, the name of a column.
     number, own, names : tuple of str
-        The columns of the system's number of a student, of what the course calls them, and of the
-        parts of their full name.
+        The columns of the system's ID of a student, of the course's own ID, and of the parts of the
+        full name.
     column : str
-        What the name of a column of marks looks like, in small letters.
+        A pattern for the lower-case name of a column of marks.
     out_of : str
-        Where it says what it is out of.
+        A pattern for the maximum grade in that name.
     """
 
     name: str
@@ -340,8 +342,8 @@ SYSTEMS = (
         r"(?!weighted total|total).*\[total pts:.*\|\d+$",
         r"total pts:\s*(?:up to )?([\d.,]+)",
     ),
-    # Canvas gives the name in one column, or on request in two; and puts the number of an
-    # assignment behind its name.
+    # Canvas gives the name in one column or, on request, in two, and puts an assignment's ID after
+    # its name.
     System(
         "Canvas",
         (("student", "lastname"), ("id",)),
@@ -356,12 +358,12 @@ SYSTEMS = (
 def columns(
     path: str | Path, store: Store, assignment: str | None
 ) -> list[tuple[str | None, str | None]]:
-    """The assignments that a gradebook has columns for, as the term says, each with its column.
+    """Return the assignments that a gradebook has columns for, by the term, each with its column.
 
     Raises
     ------
     CannotExport
-        Of several assignments nobody has said which this is.
+        Columns of several assignments have the same name.
     """
     term = term_of(store.folder)
     about = term.assignments
@@ -391,7 +393,7 @@ def _read(path: str | Path, names: Mapping[str, str]) -> Gradebook:
         raise CannotExport(f"We cannot read {path}: {error}.") from None
 
 
-#: What a person is told about students, in this order.
+#: The headings of the lists of students in the messages, in this order.
 HEADINGS = {
     "changed": "Changed since our last export",
     "nothing": "In the gradebook, but handed in nothing",
@@ -421,21 +423,22 @@ def fill(
     Parameters
     ----------
     path : path
-        As the teacher exported it.
+        The gradebook, as the instructor exported it.
     marks : Marks
     column : str, optional
-        The name of the column to fill, or its beginning; needed where several could be meant.
+        The name of the column to fill, or its beginning; needed if several could be meant.
     filled : path, optional
-        Where the filled gradebook goes.
+        Where to write the filled gradebook.
     overwrite : collection of str
-        Students whose mark by hand is written over. An excuse, such as Canvas's ``EX``, never is.
+        Students whose manually entered mark is overwritten. An excuse, such as Canvas's ``EX``,
+        never is.
     dry_run : bool
-        Say what would be written, and write nothing.
+        Return what would be written, and write nothing.
 
     Returns
     -------
     list of str
-        What was done, and who did not match.
+        What was done, and which students did not match.
 
     Raises
     ------
@@ -487,8 +490,8 @@ def fill(
     if dry_run:
         said.append(f"{number_of(len(now_written), 'mark')} would be filled in. We wrote nothing.")
     else:
-        # First what is ours: of a crash in between, the next run knows more than it
-        # wrote, and nothing is overlooked.
+        # Enter the event first, so that after a crash in between, the next run knows of everything
+        # that may have been written.
         event = Exported(
             who=getpass.getuser(),
             assignment=assignment,
@@ -525,7 +528,7 @@ def fill(
 
 
 def _written_before(marks: Marks, assignment: str, header: str) -> dict[str, list[str]]:
-    """What was written into a column for each student, which is ours to change."""
+    """Return the marks that we wrote to a column for each student, which we may change."""
     ours: dict[str, list[str]] = {}
     for event in marks.journal.events:
         if isinstance(event, Exported) and (event.assignment, event.column) == (assignment, header):
@@ -535,7 +538,7 @@ def _written_before(marks: Marks, assignment: str, header: str) -> dict[str, lis
 
 
 def _why_not(book: Gradebook, system: System, marks: Marks, line: int, student: str) -> str:
-    """Why nothing is filled in for a student: the name of a heading, or nothing."""
+    """Return why a student's cell is not filled, as the key of a heading, or an empty string."""
     if student in marks.damaged:
         return "damaged"
     if student in marks.excused:
@@ -563,7 +566,7 @@ def _is_number(there: str) -> bool:
 
 
 def _with_damaged(store: Store, names: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Of those without a record: who handed in only what was refused, and who nothing."""
+    """Split students without a record into those whose files were all refused, and all others."""
     refused = refused_of(store)
     known = {_signs(one.student) for one in refused if one.student}
     damaged = [name for name in names if _signs(name) in known or _signs(turned(name)) in known]
@@ -590,7 +593,7 @@ def _system(book: Gradebook) -> System:
 
 
 def _column(book: Gradebook, system: System, column: str | None) -> int:
-    """The number of the column to fill: the one that is called so, or else begins so."""
+    """Return the index of the column to fill, which has the name or else begins with it."""
     if column:
         wanted = column.casefold()
         same = [place for place, name in enumerate(book.header) if name.casefold() == wanted]
@@ -614,7 +617,7 @@ def _column(book: Gradebook, system: System, column: str | None) -> int:
 
 
 def _scale(book: Gradebook, system: System, place: int) -> tuple[float | None, int, bool]:
-    """What the column is out of, the first line of a student, and whether numbers have a comma."""
+    """Return a column's maximum, the first student's line, and whether it has decimal commas."""
     first = 1
     about = re.search(system.out_of, book.header[place].lower())
     said = about[1] if about else book.says(1, book.column("maximum grade"))
@@ -624,7 +627,7 @@ def _scale(book: Gradebook, system: System, place: int) -> tuple[float | None, i
         elif book.says(first, book.column("id")):
             break
         first += 1
-    # A spreadsheet writes "1,000.00" and separates fields by commas, or else "1.000,00" and
+    # A spreadsheet writes "1,000.00" and separates fields by commas, or writes "1.000,00" and
     # separates them by semicolons.
     said = re.sub(r"(?<=\d),(?=\d{3}\b)", "", said) if book.delimiter == "," else said
     comma = bool(re.search(r"\d,\d", said)) or (book.delimiter == ";" and "." not in said)
@@ -637,7 +640,7 @@ def _scale(book: Gradebook, system: System, place: int) -> tuple[float | None, i
 def _match(
     book: Gradebook, system: System, marks: Marks, first: int
 ) -> tuple[dict[int, str], list[str]]:
-    """The student of each line; and students whom several lines could mean."""
+    """Return the student of each line, and students whom several lines could mean."""
     lines: dict[tuple[str, str], set[int]] = {}
     addresses: dict[int, str] = {}
     for line in range(first, len(book.lines)):
@@ -657,7 +660,7 @@ def _match(
             if candidates:
                 several.append(student)
                 break
-    # Who comes first has no better claim: a line that two could mean is filled in for neither.
+    # Being first is no better claim, so we fill a line that two students could mean for neither.
     several += [
         student for students in wanting.values() if len(students) > 1 for student in students
     ]
@@ -670,7 +673,7 @@ def _keys_of_line(book: Gradebook, system: System, line: int) -> set[tuple[str, 
 
     keys = {("own", of(name)) for name in system.own}
     keys.add(("name", " ".join(" ".join(map(of, system.names)).split())))
-    # Behind the word for a participant, in whatever language: "Teilnehmer/in9".
+    # Drop the word for a participant before the ID, in any language, as in "Teilnehmer/in9".
     keys |= {("id", re.sub(r"\D", "", of(name))) for name in system.number}
     return {key for key in keys if key[1]}
 
@@ -685,25 +688,25 @@ def _keys_of_student(system: System, student: str, identity: Identity) -> Iterat
     if "email" in called:
         yield "own", called["email"].lower()
     if identity == Identity():
-        yield "own", student.lower()  # the folder's name is all that is known
+        # The folder's name is all that we know.
+        yield "own", student.lower()
     if "name" in called:
         yield "name", called["name"].lower()
 
 
 def write_feedback(path: str | Path, marks: Marks, store: Store) -> str:
-    """Write an archive of the pages of feedback, named so that the system which
-    handed the work out takes them back.
+    """Write an archive of feedback pages, named so that the system that has the work takes it.
 
-    A name begins with what the system wrote of the name of the work. Canvas reads the first two
-    numbers between underscores, of the student and of the file, takes no page whose last part
-    begins with "link", and looks at no folders. Moodle reads the number of the participant and
-    ``assignsubmission_file``, in the first folder that has them. Brightspace knows its own folders.
-    Say how many pages there are.
+    A name begins with the system's part of the name of the work. Canvas reads the first two numbers
+    between underscores, of the student and of the file, takes no page whose last part begins with
+    "link", and ignores folders. Moodle reads the participant's ID and ``assignsubmission_file`` in
+    the first folder that has them. Brightspace recognises its own folders. Return a message with
+    the number of pages.
 
     Raises
     ------
     CannotExport
-        A page is missing, or two would have one name.
+        A page is missing, or two would have the same name.
     """
     if marks.behind:
         raise CannotExport(
@@ -730,7 +733,7 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> str:
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, page in sorted(pages.items()):
-            # With a fixed date: the same pages give the same bytes.
+            # Use a fixed date, so that the same pages give the same bytes.
             entry = zipfile.ZipInfo(name)
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, page.read_bytes())
@@ -739,8 +742,9 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> str:
 
 
 def write_nbgrader(path: str | Path, marks: Marks) -> str:
-    """Write nbgrader's table of grades, and say what it has; it has no mark for an answer that
-    waits for a person.
+    """Write nbgrader's table of grades, and return a message about it.
+
+    It has no mark for an answer that waits for a person.
     """
     rows, pending = [], 0
     for (student, assignment), result in sorted(marks.results.items()):
@@ -761,7 +765,7 @@ def write_nbgrader(path: str | Path, marks: Marks) -> str:
 
 
 def write_gradescope(path: str | Path, marks: Marks, student: str) -> None:
-    """Write what Gradescope reads of an autograder: the results of one student."""
+    """Write a Gradescope autograder's results for one student."""
     tests: list[dict[str, str | float]] = []
     for record in marks.students[student]:
         for mark in record.marks.values():
@@ -771,7 +775,7 @@ def write_gradescope(path: str | Path, marks: Marks, student: str) -> None:
                     "number": str(len(tests) + 1),
                     "score": mark.points,
                     "max_score": mark.worth,
-                    # Neither one nor the other, where a person has still to decide.
+                    # Give no status if a person has still to decide.
                     **(
                         {}
                         if mark.outcome == "undecided"

@@ -1,12 +1,12 @@
-"""An autograder for Gradescope: a zip to upload, and what runs in it.
+"""An autograder for Gradescope: a zip file to upload, and the code that runs in it.
 
-Gradescope unpacks the zip into ``/autograder/source`` and runs ``setup.sh`` once, with a network.
-For each submission it runs ``run_autograder`` in a fresh machine, which finds the work in
-``/autograder/submission`` and who handed it in in ``/autograder/submission_metadata.json``, and
-writes ``/autograder/results/results.json``.
+Gradescope unpacks the zip file into ``/autograder/source`` and runs ``setup.sh`` once, with a
+network. For each submission it runs ``run_autograder`` on a fresh machine, which finds the work in
+``/autograder/submission`` and its students in ``/autograder/submission_metadata.json``, and writes
+``/autograder/results/results.json``.
 
-The solutions and the secret are in the zip, so students' code is isolated
-there as everywhere, or not run at all.
+The zip file contains the solutions and the secret, so students' code is isolated there as
+everywhere, or not run at all.
 """
 
 import io
@@ -55,21 +55,20 @@ exec /autograder/venv/bin/python -m coursework.grading.export.gradescope
 """
 
 
-# --- the zip ------------------------------------------------------------------------------------
+# --- the zip file -------------------------------------------------------------------------------
 
 
 def write_autograder(
     path: str | Path, marks: str | Path, assignment: str, *, solutions: str | Path | None = None
 ) -> Sequence[str]:
-    """Write the zip that Gradescope takes, for one assignment; give the names
-    of the notebooks that make it up.
+    """Write the zip file for Gradescope, for one assignment, and return its notebooks' names.
 
     Parameters
     ----------
     path : path
     marks : path
-        The folder of marks, whose term says who is in the course, with the addresses by which
-        Gradescope knows students.
+        The folder of marks, with the term. Its roster has the addresses by which Gradescope knows
+        students.
     assignment : str
     solutions : path, optional
     """
@@ -80,7 +79,8 @@ def write_autograder(
     stems = course.assignments[assignment]
     there = f'time-zone = "UTC"\n[assignments.{json.dumps(assignment)}]\n'
     there += f"notebooks = {json.dumps(stems)}\n"
-    secret_beside(folder)  # made here if there is none: marks are to be the same there
+    # Create the secret here if necessary, so that both places give the same marks.
+    secret_beside(folder)
     files = {
         "setup.sh": SETUP.encode(),
         "run_autograder": RUN.encode(),
@@ -112,22 +112,20 @@ def write_autograder(
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
         for place, content in sorted(files.items()):
-            # With a fixed date: the same autograder is the same bytes.
+            # Use a fixed date, so that the same autograder gives the same bytes.
             entry = zipfile.ZipInfo(place)
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = (
                 0o755 if place in ("setup.sh", "run_autograder") else 0o644
             ) << 16
             archive.writestr(entry, content)
-    # It holds the solutions and the secret.
+    # The file contains the solutions and the secret.
     write(path, data.getvalue(), private=True)
     return stems
 
 
 def requirements() -> list[str]:
-    """All that grading needs beside these packages, in the versions that are
-    installed here: marks follow from them.
-    """
+    """Return the versions, as installed here, of everything else that marks depend on."""
     from packaging.requirements import Requirement
 
     of_packages = metadata.packages_distributions()
@@ -154,12 +152,12 @@ def requirements() -> list[str]:
     return [f"{name}=={version}" for name, version in sorted(found.items())]
 
 
-# --- what runs there ----------------------------------------------------------------------------
+# --- the code that runs there -------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class User(AsJson):
-    """What Gradescope says of a student."""
+    """Gradescope's data about a student."""
 
     email: str
     name: str
@@ -167,7 +165,7 @@ class User(AsJson):
 
 @dataclass(frozen=True)
 class Submission(AsJson):
-    """What Gradescope says of a submission."""
+    """Gradescope's data about a submission."""
 
     users: tuple[User, ...]
 
@@ -175,7 +173,7 @@ class Submission(AsJson):
 def run(home: Path = HOME) -> None:
     """Grade the submission of one student, or of a group, and write its results.
 
-    Where students' code cannot be kept apart well enough, there are no results: Gradescope says
+    If students' code cannot be isolated well enough, there are no results. Gradescope then reports
     that the autograder failed, and nobody has lost a point.
     """
     from ..assignments import NothingToGrade
@@ -224,7 +222,7 @@ def run(home: Path = HOME) -> None:
 
 
 def _say(results: Path, said: str) -> None:
-    """Results without questions: for nothing there are no points, and the student is told why."""
+    """Write results without questions or points, and with the reason for the student."""
     from ...checking.writing import readable
 
     results.write_text(
@@ -233,7 +231,7 @@ def _say(results: Path, said: str) -> None:
 
 
 def prepare(home: Path = HOME) -> None:
-    """Work the questions out, once for all submissions."""
+    """Process the questions once for all submissions."""
     from ..assignments import Course
 
     term = term_of(home / "source")

@@ -1,1 +1,1 @@
-"""Told: pages and tables made of the records."""
+"""Pages and tables that are made from the records."""

@@ -1,4 +1,4 @@
-"""Writes a table of all marks of a course, a page for each student, and pages on the questions."""
+"""A table of all marks of a course, a page for each student, and pages on the questions."""
 
 import datetime
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,7 +13,7 @@ from .statistics import Question, Same, Statistics
 from .templates_of_pages import ENVIRONMENT, page
 
 FOLDER = "course"
-#: What the page tells a student of each state; an assignment that simply counts needs no words.
+#: The words on the page for each state; an assignment that simply counts needs none.
 STATES = {
     "counted": "",
     "dropped": "dropped: it does not count",
@@ -30,12 +30,13 @@ OUTCOMES = {
     "decided": "decided by a person",
     "not attempted": "not attempted",
 }
-MOST_ANSWERS = 100  # of one group on one page
+# The most answers of one group on one page.
+MOST_ANSWERS = 100
 ENVIRONMENT.filters["moment"] = lambda moment: moment.strftime("%Y-%m-%d %H:%M %Z")
 
 
 def write_course(store: Store, term: Term, *, now: datetime.datetime | None = None) -> list[str]:
-    """Write the totals of a course into the folder ``course`` of the results.
+    """Write the totals of a course to the folder ``course`` of the results.
 
     Parameters
     ----------
@@ -46,7 +47,7 @@ def write_course(store: Store, term: Term, *, now: datetime.datetime | None = No
     Returns
     -------
     list of str
-        What a person should know.
+        Messages for a person.
 
     Raises
     ------
@@ -176,7 +177,7 @@ def _write_questions(folder: Path, statistics: Statistics, name: str) -> None:
 
 
 def _groups(found: Question, assignment: str) -> tuple[list[dict[str, object]], dict[str, str]]:
-    """Group the answers of a question by what was said of them, the most frequent first."""
+    """Group the answers to a question by outcome and mistake, the most frequent first."""
     groups: dict[tuple[str, str], list[Same]] = {}
     anchors: dict[str, str] = {}
     for (outcome, did, _), same in found.answers.items():

@@ -1,4 +1,4 @@
-"""How a mark came to be what it is, in a few lines."""
+"""An explanation of how a mark came about, in a few lines."""
 
 import datetime
 import difflib
@@ -17,7 +17,7 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
     Raises
     ------
     ValueError
-        There are none.
+        The student has no mark for it.
     """
     term, journal = of_term.term_of(store.folder), Journal(store.folder)
     whose = term.group_of(student, assignment)

@@ -1,4 +1,4 @@
-"""Pages for people: complete in one file, without a script, and safe whatever a student wrote."""
+"""Pages for people: complete in one file, without scripts, and safe whatever a student wrote."""
 
 import base64
 import functools
@@ -51,7 +51,7 @@ figure { margin: .6rem 0; } .scroll table { min-width: 32rem; }
 @media print { body { background: #fff; font-size: 11pt; } main { max-width: none; padding: 0; }
   section.question { background: none; } h2 { break-after: avoid; } tr { break-inside: avoid; } }
 """
-#: No script, no picture, no font, no address: a page loads nothing, whatever is in it.
+#: A page loads no script, picture, font or address, whatever is in it.
 POLICY = (
     "default-src 'none'; style-src 'sha256-"
     + base64.b64encode(hashlib.sha256(STYLE.encode()).digest()).decode()
@@ -105,26 +105,25 @@ ATTRIBUTES = {
 
 
 def text(value: object, most: int = 400) -> str:
-    """Text for a page: whatever it holds is shown and never obeyed."""
+    """Return text for a page, escaped so that a browser shows it and never interprets it."""
     return html.escape(readable(str(value), most))
 
 
 def message(said: str) -> str:
-    """A message, with ``code``, *emphasis* and $mathematics$ marked as in Markdown, as HTML."""
+    """Return a message as HTML, with ``code``, *emphasis* and $formulas$ as in Markdown."""
     return to_html(readable(said, 4_000), formula)
 
 
 @functools.lru_cache(2_000)
 def formula(source: str, longest: int = 300) -> str:
-    """TeX as MathML, or as it is where it cannot be turned into that."""
+    """Return TeX as MathML, or unchanged if it cannot be converted."""
     from latex2mathml.converter import convert
 
     try:
         if len(source) > longest:
             raise ValueError
         found = convert(source)
-        # A student's words may have come into a message: only what
-        # draws mathematics is let through.
+        # A message may contain a student's words, so let only elements of formulas through.
         for element in ElementTree.fromstring(found).iter():
             name = element.tag.rpartition("}")[2]
             if name not in MATHEMATICS or not set(element.attrib) <= ATTRIBUTES:
@@ -135,6 +134,6 @@ def formula(source: str, longest: int = 300) -> str:
 
 
 def answer_as_mathematics(plain: Plain | None) -> str:
-    """The MathML of a plain answer, or an empty text where it is shown as text only."""
+    """Return the MathML of a plain answer, or an empty string if it is shown as text only."""
     found = formula(answer_as_tex(plain), LONGEST) if plain else ""
     return found if found.startswith("<math") else ""

@@ -1,6 +1,6 @@
-"""What is made of the records: marks as a table, a page for each student, and a page on the class.
+"""Reports from the records: tables of marks, a page for each student, and a page on the class.
 
-Everything here can be made again from the records at any time, and comes out the same.
+Everything here can be made again from the records at any time, with the same result.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from ..submissions.intake import Refused, refused_of
 from ..tables import lines, table
 from .templates_of_pages import page
 
-#: The addresses that feedback leads to, as the course had them when it was graded.
+#: The addresses that feedback links to, as the course had them when it was graded.
 LINKS = "links.json"
-#: What is said of an outcome once there is no "yet" any more.
+#: The words for outcomes that have a "yet" elsewhere, which would be wrong once work is graded.
 FINAL = {"decided": ("✓", "Decided by a person"), "wrong": ("✗", "Not right")}
-#: What the class did, to follow "31 % of the class ...", by the note of a
-#: mistake or of a fault of the form.
+#: What students did, to follow "31 % of the class ...", by the note of a mistake or of a fault of
+#: the form.
 DEEDS = {
     "transposed": "gave the transpose",
     "in degrees": "answered in degrees",
@@ -66,8 +66,10 @@ DEEDS = {
     "unreadable": "gave something that cannot be read as an answer",
     "right only where it is checked": "gave something that is right only where the check tests it",
 }
-MOST_UNDECIDED, MOST_NAMES = 200, 200  # that the report names; all are in the tables
-MOST_STOPPED = 10  # cells of a notebook that did not come to their end, which feedback names
+# The most answers and names in the report; the tables have all of them.
+MOST_UNDECIDED, MOST_NAMES = 200, 200
+# The most incomplete cells of a notebook in the feedback.
+MOST_STOPPED = 10
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 NOTES = {
     "works only out of order": "It works only if its cells run in a different order. "
@@ -80,9 +82,9 @@ NOTES = {
 
 
 class _Assignment:
-    """What the report says of an assignment, from one record after another.
+    """The data of the report on an assignment, collected from one record after another.
 
-    What is kept grows with the number of different answers, not with the class.
+    Its size grows with the number of different answers, not with the class.
     """
 
     def __init__(self, says: str = "") -> None:
@@ -142,7 +144,7 @@ class _Assignment:
 
 
 def write_all(store: Store) -> None:
-    """Make the tables and the pages of all records; no more than one record is held at a time."""
+    """Write the tables and the pages of all records, holding only one record at a time."""
     classes: dict[str, _Assignment] = {}
     names: dict[str, None] = {}
     links, term = store.said(LINKS, by_name(text)) or {}, term_of(store.folder)
@@ -172,7 +174,7 @@ def write_all(store: Store) -> None:
 
 
 def write_moves(laboratory: Laboratory, folder: Path) -> None:
-    """Write the page of what would move."""
+    """Write the page of possible changes to marks."""
     groups = (
         ("Who would gain", laboratory.gain),
         ("Who would lose", laboratory.lose),
@@ -182,8 +184,9 @@ def write_moves(laboratory: Laboratory, folder: Path) -> None:
     write(folder / PAGE, page("laboratory.html", groups=groups, lines=laboratory.lines()))
 
 
-#: Filled in, it is a table of decisions: ``id`` and ``version`` bind each line to what it is about.
-#: Without the sign in front, a spreadsheet would read a digest such as 2389540731e5 as a number.
+#: The columns of a table that becomes one of decisions when filled in. ``id`` and ``version``
+#: identify the answer and the question of each line. Without the sign in front, a spreadsheet would
+#: read a digest such as 2389540731e5 as a number.
 UNDECIDED = (
     "id", "version", "student", "question", "credit", "comment", "worth", "why", "message", "answer"
 )  # fmt: skip
@@ -213,7 +216,7 @@ def _write_if_new(path: Path, content: str) -> None:
 
 
 def grades(records: Iterable[Record], names: Sequence[str]) -> Iterator[str]:
-    """All marks as CSV, line by line: one for each student and assignment."""
+    """Return all marks as lines of CSV, one for each student and assignment."""
     header = ["student", "assignment", "points", "worth", "undecided", "late", *names]
     return lines(
         [*header, *(f"{name}: outcome" for name in names)],
@@ -244,8 +247,9 @@ def feedback(
     term: Term | None = None,
     sat: Sat | None = None,
 ) -> str:
-    """The page that a student gets; ``links`` are addresses as a course has them, and ``sat`` the
-    marks of the student's sittings.
+    """Return a student's page.
+
+    ``links`` are the addresses of the course, and ``sat`` the marks of the student's sittings.
     """
     term = term or Term()
     now = datetime.datetime.now(datetime.UTC)
@@ -269,7 +273,7 @@ def feedback(
     )
 
 
-#: What the addresses of a course lead to, in words.
+#: The link texts for the addresses of a course.
 LEADS_TO = {"chapter": "the chapter", "solution": "the worked solution"}
 
 
@@ -283,11 +287,9 @@ def _addresses(question: str, links: Mapping[str, str]) -> list[tuple[str, str]]
 
 
 def _shown(record: Record, name: str) -> tuple[Plain, str] | None:
-    """An answer as it was read, as mathematics and as text; nothing
-    where there is nothing to show.
-    """
+    """Return an answer as plain data and as text; ``None`` if there is nothing to show."""
     plain = record.answer(name).plain
-    # What a function returned is not repeated: a list of it would do for a friend's answer.
+    # Do not repeat what a function returned, which a friend could use as a table of values.
     if (
         not plain
         or record.marks[name].outcome == "not attempted"
@@ -298,7 +300,7 @@ def _shown(record: Record, name: str) -> tuple[Plain, str] | None:
 
 
 def _stopped(notebook: RunNotebook) -> list[tuple[int, Cell]]:
-    """The cells of a notebook that did not come to their end, with their numbers."""
+    """Return the cells of a notebook that did not run to their end, with their numbers."""
     return [
         (order, cell)
         for order, cell in enumerate(notebook.cells, 1)
@@ -310,20 +312,20 @@ def _stopped(notebook: RunNotebook) -> list[tuple[int, Cell]]:
 
 
 def feedback_of(student: str, assignment: str) -> str:
-    """Where a page of feedback lies, from the folder of results."""
+    """Return the path of a page of feedback in the folder of results."""
     return f"feedback/{file_name(student)}/{file_name(assignment)}.html"
 
 
 def deed(mark: Mark) -> str:
-    """What was done, in words that follow "31 % of the class"."""
+    """Return what the student did, in words that follow "31 % of the class"."""
     if mark.note == "authored":
         return f"were told: “{mark.messages[0]}”"
-    # Where there is only one turn, it has no number.
+    # A single rotation has no number.
     details = {
         name: ORDINALS[value] if isinstance(value, int) and name != "number" else value or ""
         for name, value in mark.details.items()
     }
-    # Two mistakes at once are named together, as in "transposed, and sign of one turn".
+    # Two mistakes at once have one note, as in "transposed, and sign of one turn".
     notes = [mark.note] if mark.note in _deeds() else mark.note.split(", and ")
     return " ".join(
         ", and ".join(_deeds().get(note, note) for note in notes).format(**details).split()
@@ -338,7 +340,7 @@ def _deeds() -> dict[str, str]:
 
 
 def report(classes: Mapping[str, _Assignment], refused: Sequence[Refused]) -> str:
-    """The page on the class."""
+    """Return the page on the class."""
     ways = sum((found.ways for found in classes.values()), Counter())
     versions = sum((found.versions for found in classes.values()), Counter())
     return page(
@@ -355,7 +357,7 @@ def report(classes: Mapping[str, _Assignment], refused: Sequence[Refused]) -> st
 
 
 def _about(found: _Assignment) -> dict[str, object]:
-    """What the report shows of an assignment, worked out."""
+    """Return the computed values that the report shows for an assignment."""
     points = list(found.points.elements())
     return {
         "mean": f"{mean(points):.1f}",
@@ -371,11 +373,12 @@ def _about(found: _Assignment) -> dict[str, object]:
     }
 
 
-WIDTH, HEIGHT, LEFT, BASE, TALLEST = 660, 190, 34, 158, 120  # of the histogram
+# The sizes of the histogram.
+WIDTH, HEIGHT, LEFT, BASE, TALLEST = 660, 190, 34, 158, 120
 
 
 def _histogram(points: Mapping[float, int], worth: float) -> list[dict[str, float]]:
-    """The bars: where each begins, how wide and tall it is, the students in it, and its points."""
+    """Return for each bar its position, width, height, number of students, and range of points."""
     bins = min(10, max(1, round(worth)))
     counts = [0] * bins
     for value, students in points.items():
@@ -394,7 +397,7 @@ def _histogram(points: Mapping[float, int], worth: float) -> list[dict[str, floa
     ]
 
 
-#: What a bar is made of, in order: outcomes, and what they are called.
+#: The parts of a bar, in order: outcomes, and what they are called.
 PARTS = (
     ("correct", "right"),
     ("wrong", "wrong"),
@@ -418,9 +421,7 @@ def _success(
 
 
 def _tries(counts: Counter[int] | None) -> str:
-    """How many different answers were tried, as the notebooks of those
-    remember that show it; or nothing.
-    """
+    """Return how many different answers students tried, as far as notebooks show it."""
     if not counts:
         return ""
     known, most = list(counts.elements()), max(counts)
@@ -462,7 +463,7 @@ def _same(found: _Assignment) -> list[tuple[str, int, str]]:
 
 
 def _oddities(record: Record) -> dict[str, None]:
-    """What is worth a look in a record, each kind once."""
+    """Return what is worth a look in a record, each kind once."""
     found: dict[str, None] = {}
     for notebook in record.notebooks:
         found.update(dict.fromkeys(notebook.notes))

@@ -1,7 +1,6 @@
-"""What the class says of each question: how hard it is, whether it tells
-students apart, and what was mixed up.
+"""Statistics of each question: difficulty, discrimination between students, and mistakes.
 
-One record after another is taken in, and of equal answers only one is kept.
+They are collected from one record after another, keeping one example of equal answers.
 """
 
 import math
@@ -16,12 +15,14 @@ from ..judging.journal import digest_of_answer
 from ..record import Mark, Record
 from .reports import deed
 
-FEWEST = 10  # students, below which a correlation says nothing
-MOST_NAMES = 40  # of those who gave one answer
+# The fewest students for which a correlation is meaningful.
+FEWEST = 10
+# The most names of students who gave the same answer.
+MOST_NAMES = 40
 
 
 class Correlation(NamedTuple):
-    """Pearson's correlation, and its 95 % interval by Fisher's transformation."""
+    """Pearson's correlation coefficient, with its 95 % interval by Fisher's transformation."""
 
     value: float
     low: float
@@ -29,7 +30,7 @@ class Correlation(NamedTuple):
 
     @classmethod
     def of(cls, pairs: Sequence[tuple[float, float]]) -> Self | None:
-        """``None`` for too few pairs, or where one of the two does not vary."""
+        """Compute it from pairs; ``None`` for too few, or if one of the two does not vary."""
         columns = list(zip(*pairs, strict=True))
         if len(pairs) < FEWEST or min(len(set(column)) for column in columns) == 1:
             return None
@@ -41,7 +42,7 @@ class Correlation(NamedTuple):
 
 @dataclass
 class Same:
-    """Equal answers: an example, how many there are, and the first who gave one."""
+    """Equal answers: an example, their number, and the first students who gave one."""
 
     plain: Plain | None
     number: int = 0
@@ -49,7 +50,7 @@ class Same:
 
 
 class Question:
-    """What is known of one question.
+    """The statistics of one question.
 
     Attributes
     ----------
@@ -59,9 +60,9 @@ class Question:
     shares : list
         For each student, the share earned here and that earned in the rest of the assignment.
     notes : Counter
-        What was mixed up, in words.
+        The mistakes, in words.
     answers : dict of Same
-        By the outcome, what was mixed up, and what equal answers have in common.
+        Equal answers, by outcome, mistake and what they have in common.
     """
 
     def __init__(self, assignment: str, mark: Mark) -> None:
@@ -82,7 +83,7 @@ class Question:
 
     @property
     def difficulty(self) -> float | None:
-        """The mean share of the credit; ``None`` as long as all wait."""
+        """The mean share of the credit; ``None`` as long as all answers wait for a person."""
         return self.earned / self.decided if self.decided else None
 
 

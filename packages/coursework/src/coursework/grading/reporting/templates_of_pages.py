@@ -1,6 +1,4 @@
-"""The templates of pages, in which everything is text unless it is said to
-be mathematics or a message of ours.
-"""
+"""The templates of pages, which escape everything except formulas and our own messages."""
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
@@ -29,12 +27,12 @@ ENVIRONMENT.filters |= {
 
 
 def source_of(name: str) -> str:
-    """A file that lies beside the templates, as it is."""
+    """Return the source of a file beside the templates."""
     return LOADER.get_source(ENVIRONMENT, name)[0]
 
 
 def page(template: str, **about: object) -> str:
-    """A page that is complete in one file, by the template of a name."""
+    """Return a page from a template, complete in one file."""
     return ENVIRONMENT.get_template(template).render(
         style=Markup(pages.STYLE), policy=Markup(pages.POLICY), **about
     )

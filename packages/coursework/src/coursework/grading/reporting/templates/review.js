@@ -1,5 +1,5 @@
-// Keys: each thing that has one names it in `data-key`. Without this script everything is still reached by Tab. Single
-// keys are off at first: whoever dictates, or strikes a key by accident, decides nothing by it.
+// Elements name their key in `data-key`. Without this script, everything can still be reached by Tab. Single keys are off
+// at first, so that dictating, or hitting a key by accident, decides nothing.
 const keys = document.getElementById("keys");
 keys.checked = sessionStorage.getItem("keys") === "on";
 keys.addEventListener("change", () => sessionStorage.setItem("keys", keys.checked ? "on" : "off"));
@@ -9,7 +9,7 @@ document.addEventListener("keydown", (event) => {
   if (!keys.checked && event.key !== "Escape") return;
   const field = event.target.closest("input:not([type=checkbox]), textarea, select");
   if (field) {
-    // In a field signs are signs; Escape leaves it.
+    // In a field, keys only enter text; Escape leaves it.
     if (event.key === "Escape") field.blur();
     else if (event.key === "Enter" && field.matches("form.decide input")) event.preventDefault();
     return;
