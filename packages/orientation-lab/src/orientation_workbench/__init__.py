@@ -1,6 +1,4 @@
-"""Where the world's numbers meet this book: two programs that disagree,
-and recordings that are to be judged.
-"""
+"""The workbench: explains why two programs disagree, and examines recordings of sensors."""
 
 from importlib import import_module
 
@@ -10,6 +8,6 @@ __all__ = ["Convention", "Explanation", "assert_convention", "convention_of", "e
 def __getattr__(name):
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    # The table of mix-ups is read where there is no NumPy; the search needs it.
+    # The table of mix-ups must load without NumPy, which the search needs.
     module = ".mismatch.explanation" if name in ("Explanation", "explain") else ".kit"
     return getattr(import_module(module, __name__), name)

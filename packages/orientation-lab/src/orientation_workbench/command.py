@@ -1,6 +1,4 @@
-"""The command ``orientation``: ``orientation explain FIRST SECOND``
-and ``orientation recording FILE``.
-"""
+"""The command ``orientation``, with ``explain FIRST SECOND`` and ``recording FILE``."""
 
 import argparse
 import json
@@ -24,12 +22,12 @@ EXIT_CODES = {"same": 0, "named": 1, "undecided": 2, "unrelated": 2}
 BAD_INPUT = 3
 
 
-#: An argument like this is the name of a file, not numbers.
+#: Matches an argument that is the name of a file rather than numbers.
 _NAME_OF_A_FILE = re.compile(r"\S*[^\W\d]\S*\.[a-zA-Z]\w{0,4}")
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser that ends with BAD_INPUT for a wrong argument, since 2 is an answer."""
+    """An argument parser that exits with BAD_INPUT for a wrong argument, since 2 is an answer."""
 
     def error(self, message):
         self.print_usage(sys.stderr)
@@ -38,7 +36,7 @@ class _Parser(argparse.ArgumentParser):
 
 def main(arguments=None):
     if arguments is None and hasattr(signal, "SIGPIPE"):
-        # The reader of what is printed, such as `head`, may stop when it has seen enough.
+        # A program that reads the output, such as `head`, may stop early.
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     parser = _Parser(
         prog="orientation",
@@ -50,7 +48,7 @@ def main(arguments=None):
     _add_explain(commands)
     _add_recording(commands)
     given = sys.argv[1:] if arguments is None else arguments
-    # A word that begins with a minus and a digit is a number, not an option.
+    # A word that begins with a minus sign and a digit is a number, not an option.
     chosen = parser.parse_args(
         [f" {word}" if re.match(r"-[.\d]", word) else word for word in given]
     )
@@ -152,7 +150,7 @@ def _add_recording(commands):
     parser.add_argument(
         "--quick", action="store_true", help="skip the filter, which is the slowest step"
     )
-    # Explaining needs no bench, so only this command loads it.
+    # Explaining does not need the bench, so only this command loads it.
     parser.set_defaults(
         run=lambda chosen: import_module(".recording.command", __package__).run(chosen)
     )
@@ -161,7 +159,7 @@ def _add_recording(commands):
 def _given(argument):
     if argument == "-":
         return sys.stdin.read()
-    # What is no file, or too long for the name of one, is the numbers themselves.
+    # An argument that is not a file, or is too long to be a file's name, is the numbers themselves.
     with suppress(OSError, ValueError):
         return Path(argument).read_text(encoding="utf-8")
     if _NAME_OF_A_FILE.fullmatch(argument):
@@ -170,7 +168,7 @@ def _given(argument):
 
 
 def _declared(words):
-    """Return the conventions that the words name; each word names one."""
+    """Return the conventions that the words declare; each word declares one."""
     groups = {
         choice["value"]: group["group"]
         for groups in KINDS.values()
@@ -225,14 +223,14 @@ def _explain(chosen):
 
 
 def as_data(explanation):
-    """An explanation as plain data: what ``--json`` prints, in format 1."""
+    """Return an explanation as plain data in format 1, which ``--json`` prints."""
     mended = explanation.chains[0] if explanation.has_line else None
     return {
         "format": 1,
         "verdict": explanation.verdict,
         "poses": explanation.poses,
         "faults": list(explanation.faults),
-        # Below a millionth of a degree it is the processor's rounding.
+        # Anything below a millionth of a degree is rounding error.
         "residual in degrees": None
         if explanation.residual is None
         else round(explanation.residual, 6),

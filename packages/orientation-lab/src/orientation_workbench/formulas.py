@@ -1,9 +1,9 @@
-"""Record the formulas of ``orientation``: what each computes, step by step, without any number.
+"""Record the formulas of ``orientation``: what each computes, step by step, without numbers.
 
 Each conversion is written once, as a formula that takes components and a namespace of functions.
-Here the components are `Value`, which remember how they were made, and so the formula tells itself,
-with its operations in their order. `orientation_workbench.languages` writes it down in other
-languages.
+Here the components are instances of `Value`, which remember how they were computed, so evaluating a
+formula records its operations in order. `orientation_workbench.languages` writes the record in
+other languages.
 """
 
 import math
@@ -18,9 +18,7 @@ _made = {}
 
 
 class Value:
-    """A number, or what is true or false, that is not known yet: an
-    operation, and what it is applied to.
-    """
+    """A number or Boolean that is not known yet: an operation and its operands."""
 
     __slots__ = ("operation", "parts")
     __hash__ = object.__hash__
@@ -33,9 +31,7 @@ class Value:
 
 
 def made(operation, *parts):
-    """The value that an operation makes: the same object for the
-    same operation on the same parts.
-    """
+    """Return the value of an operation, always the same object for the same operands."""
     key = (operation, *(id(part) if isinstance(part, Value) else (part,) for part in parts))
     if key not in _made:
         _made[key] = Value(operation, parts)
@@ -43,12 +39,12 @@ def made(operation, *parts):
 
 
 def variable(name):
-    """A value that has a name: a component of what the formula is given."""
+    """Return a value with a name, a component of one of the formula's arguments."""
     return made("variable", name)
 
 
 def _is(value, number):
-    # A zero with a point is added on purpose: it turns -0 into 0.
+    # An integer only: 0.0 is added on purpose, since it turns -0.0 into 0.0.
     return type(value) is int and value == number
 
 
@@ -62,7 +58,7 @@ def negative(value):
     return value.parts[0] if _negative(value) else made("negative", value)
 
 
-# Signs are joined where the numbers stay the same to the last bit.
+# Signs are combined only where the result stays the same to the last bit.
 def added(first, second):
     if _is(first, 0) or _is(second, 0):
         return second if _is(first, 0) else first
@@ -90,7 +86,7 @@ def _compared(operation):
     return lambda value, other: made(operation, value, other)
 
 
-#: What Python's operators do with a value: with an ``r`` those whose value stands on the right.
+#: What Python's operators do with a value. In those with an ``r``, the value is on the right.
 _OPERATORS = {
     "add": added,
     "radd": lambda value, other: added(other, value),
@@ -115,7 +111,7 @@ for _name, _function in _OPERATORS.items():
 
 
 def _pick(scores, rows):
-    """The row whose score is the largest, the first of several, entry by entry."""
+    """Return the row with the largest score, or the first of several, entry by entry."""
     *others, last = [
         (made("and", *(score >= other for other in scores if other is not score)), row)
         for score, row in zip(scores, rows)
@@ -134,7 +130,7 @@ def _where(condition, yes, no):
     )
 
 
-#: The namespace that a formula is given.
+#: The namespace of functions that a formula receives.
 FUNCTIONS = SimpleNamespace(
     sin=lambda angle: made("sin", angle),
     cos=lambda angle: made("cos", angle),
@@ -146,12 +142,12 @@ FUNCTIONS = SimpleNamespace(
 
 
 def applied(formula, *components):
-    """The results of a formula ``formula(f, *components)`` that are recorded."""
+    """Return the recorded results of a formula ``formula(f, *components)``."""
     return list(formula(FUNCTIONS, *components))
 
 
 def recorded(function, *arguments):
-    """The results of a public function of ``orientation``, in a flat list."""
+    """Return the recorded results of a public function of ``orientation``, in a flat list."""
 
     def record(formula, shape, *given, guard=None):
         components = [entry for _, value, _ in given for entry in _flat(value)]
@@ -159,8 +155,7 @@ def recorded(function, *arguments):
         results[:] = applied(formula, *components)
         return results.reshape(shape)
 
-    # The function looks its helpers up among the names of its module:
-    # there it finds these, and goes on.
+    # The function looks its helpers up in its module's globals, so patching those records it.
     helpers = {
         "evaluate": record,
         "evaluate_numbers": record,
@@ -179,8 +174,7 @@ def _flat(value):
     )
 
 
-#: What can be taken away: what each function takes, by the names of
-#: its arguments, and what it gives.
+#: The formulas to take away: the kind of each argument, by name, and of the result.
 FORMULAS = {
     "simple_dcm": ({"angle": "angle"}, "matrix"),
     "dcm_from_body_fixed": ({"angles": "angles"}, "matrix"),
@@ -204,7 +198,7 @@ FORMULAS = {
     "quaternion_rate": ({"quaternion": "quaternion", "angular_velocity": "vector"}, "quaternion"),
     "rotation_vector_rate": ({"vector": "vector", "angular_velocity": "vector"}, "vector"),
 }
-#: How many numbers each is; one alone is no list.
+#: How many numbers each kind has; a single one is not a list.
 SIZES = {
     "angle": 1,
     "number": 1,
@@ -215,7 +209,7 @@ SIZES = {
     "entries": 9,
 }
 LISTS = ("angles", "vector", "quaternion", "matrix", "entries")
-#: What is chosen once for a whole function, and not a number of it.
+#: Arguments that are chosen once for a whole function and are not numbers.
 CHOICES = {
     "simple_dcm": ("axis", orientation.direction_cosines.AXES),
     **{
@@ -229,9 +223,7 @@ CHOICES = {
 
 
 def formula_of(name, components, choice=None):
-    """The results of one of `FORMULAS` for the components of its
-    arguments, each a list of values.
-    """
+    """Return the results of one of `FORMULAS`, given a list of values for each argument."""
     given = [
         [entries[k : k + 3] for k in (0, 3, 6)]
         if kind in ("matrix", "entries")

@@ -1,6 +1,4 @@
-"""A kit for tests: which convention a function has, found by what it
-answers, and asserted in one line.
-"""
+"""A kit for tests: find out a function's convention by calling it, and assert it in one line."""
 
 from typing import NamedTuple
 
@@ -16,11 +14,10 @@ from orientation import (
 from .mismatch import table
 from .mismatch.explanation import explain
 
-#: Three orientations that nothing special can be said of; no angle of
-#: theirs is small or near half a turn.
+#: Three generic orientations, none with an angle that is small or near half a turn.
 _TURNS = ((0.4, 0.7, -0.3), (-1.1, 0.5, 0.9), (0.8, -0.6, 1.3))
 
-#: What a function may take, and the arguments of this book's convention that it is called with.
+#: The inputs a function may take, and the arguments in this book's convention to call it with.
 TAKES = {
     "axis and angle": axis_angle_from_dcm,
     "rotation vector": lambda dcm: (rotation_vector_from_dcm(dcm),),
@@ -33,11 +30,11 @@ TAKES = {
 class Convention(NamedTuple):
     """What `convention_of` found.
 
-    ``takes`` and ``gives`` say how the arguments and the result are to be read: for each group of
-    `orientation_workbench.mismatch.table.KINDS` the choice. ``inverse`` is whether the result is
-    the transpose of this book's matrix, the conjugate of its quaternion, or the turn in the other
-    sense. ``body`` and ``world`` are the axes that the result calls x, y and z. ``words`` are all
-    departures from this book, each as a phrase.
+    ``takes`` and ``gives`` say how to read the arguments and the result, with the choice in each
+    group of `orientation_workbench.mismatch.table.KINDS`. ``inverse`` says whether the result is
+    the transpose of this book's matrix, the conjugate of its quaternion, or the rotation in the
+    opposite sense. ``body`` and ``world`` are the axes that the result calls x, y and z. ``words``
+    are all departures from this book, each as a phrase.
     """
 
     takes: dict
@@ -56,22 +53,22 @@ def convention_of(
 ) -> Convention:
     """Find out by a few experiments which convention a function of orientations has.
 
-    The function is called with three orientations as this book writes them, and what
-    it answers is read in every way.
+    The function is called with three orientations, written as in this book, and its answers are
+    read in every possible way.
 
     Parameters
     ----------
     function : callable
-        Is given an axis of shape ``(3,)`` and an angle, or one array: a rotation vector or angles
-        of shape ``(3,)``, a quaternion ``(4,)``, a matrix ``(3, 3)``. Returns a matrix of shape
+        Takes an axis of shape ``(3,)`` and an angle, or one array: a rotation vector or angles of
+        shape ``(3,)``, a quaternion ``(4,)`` or a matrix ``(3, 3)``. Returns a matrix of shape
         ``(3, 3)`` or ``(4, 4)``, a quaternion, or three numbers.
     takes : str
         ``'axis and angle'``, ``'rotation vector'``, ``'Euler angles'``, ``'quaternion'`` or
         ``'matrix'``.
     gives : str, optional
-        The same of the result: needed where that is three numbers, or an axis and its angle.
+        The same for the result; required if it is three numbers, or an axis and its angle.
     sequence : str, optional
-        The sequence of the angles; without it all twelve are tried.
+        The sequence of the angles; by default all twelve are tried.
 
     Returns
     -------
@@ -80,8 +77,7 @@ def convention_of(
     Raises
     ------
     ValueError
-        If the answers are no orientations, or follow from the arguments by no convention that is
-        known.
+        If the answers are not orientations, or no known convention explains them.
 
     Examples
     --------
@@ -96,7 +92,7 @@ def convention_of(
         raise ValueError(f"a function can take {', '.join(TAKES)}, not {takes!r}")
     asked, answered = [], []
     for angles in _TURNS:
-        # The same three numbers as angles, or the orientation that they make as something else.
+        # The same three numbers serve as angles, or as the orientation they describe.
         arguments = (
             (np.array(angles),)
             if takes == "Euler angles"
@@ -128,7 +124,7 @@ def convention_of(
     )  # fmt: skip
 
 
-#: Words of an expectation, and the group of a reading that each is of.
+#: Keywords for an expectation, and the group of a reading that each belongs to.
 EXPECTED = {
     "order": "order",
     "turns": "axes of the turns",
@@ -150,29 +146,28 @@ def assert_convention(
     world: str = "x y z",
     **expected: str,
 ) -> None:
-    """Assert in one line of a test that a function has a convention;
-    what is not said is as in this book.
+    """Assert in one line of a test that a function has a convention, by default this book's.
 
     Parameters
     ----------
     function, takes, gives, sequence
         As for `convention_of`.
     inverse : bool
-        Whether it gives the transpose, or the conjugate, of what this book does, as SciPy's
-        matrices are.
+        Whether the function returns the transpose or conjugate of what this book does, as SciPy
+        does for matrices.
     body, world : str
-        What it calls x, y and z, as ``'x -y -z'``.
+        The function's x, y and z axes, such as ``'x -y -z'``.
     order, turns, places, signs, unit, place : str
-        Of a quaternion ``'wxyz'`` or ``'xyzw'``; of angles ``'body fixed'`` or ``'space fixed'``,
-        how they are printed and signed, and ``'radians'`` or ``'degrees'``; whether the angle of an
-        axis stands ``'first'`` or ``'last'``.
+        For a quaternion ``'wxyz'`` or ``'xyzw'``. For angles ``'body fixed'`` or ``'space fixed'``,
+        their order and signs, and ``'radians'`` or ``'degrees'``. For an axis and an angle, whether
+        the angle comes ``'first'`` or ``'last'``.
 
     Raises
     ------
     AssertionError
-        With what the function does otherwise.
+        If the convention differs; the message says how.
     ValueError
-        As for `convention_of`, and for a word that is not known.
+        As for `convention_of`, and for an unknown keyword.
 
     Examples
     --------

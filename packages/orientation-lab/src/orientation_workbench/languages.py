@@ -1,7 +1,7 @@
-"""Take a formula away: the module's own, in another language and in another convention.
+"""Write one of the module's formulas in another language and another convention.
 
-`orientation_workbench.formulas` records what a function of ``orientation`` computes; here it is
-written down. No formula stands here a second time.
+`orientation_workbench.formulas` records what a function of ``orientation`` computes, and this
+module writes it down, so that no formula is written twice.
 """
 
 import math
@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from .formulas import CHOICES, FORMULAS, LISTS, SIZES, Value, formula_of, variable
 
-#: How numbers come and go, the book's own convention first.
+#: The conventions for input and output, this book's own first.
 CONVENTIONS = {
     "matrix": ("as here", "transposed"),
     "scalar": ("first", "last"),
@@ -27,19 +27,45 @@ _SHORT = {
 
 @dataclass(frozen=True)
 class Language:
-    """How a language writes a function: each field is filled in with ``format``."""
+    """How a language writes a function; each field is filled in with ``format``.
 
-    frame: str  #: of function, arguments, count and body
-    single: str  #: the declaration of an argument that is one number
-    several: str  #: and of one that is several
-    part: str  #: a line that holds a part of the formula
-    chosen: str  #: a line that holds one of two, by a condition
+    Attributes
+    ----------
+    frame : str
+        The whole function: its name, arguments, number of results and body.
+    single, several : str
+        The declaration of an argument that is one number, or several.
+    part : str
+        A line that assigns a part of the formula.
+    chosen : str
+        A line that assigns one of two values by a condition.
+    result : str
+        A line that assigns one entry of the result.
+    alone : str
+        The line that returns a result of one number.
+    frame_alone : str
+        The whole function for such a result, if it differs from ``frame``.
+    index : str
+        An entry of an array.
+    start : int
+        The first index.
+    whole : str
+        A whole number.
+    functions : dict
+        Calls of mathematical functions, by operation.
+    """
+
+    frame: str
+    single: str
+    several: str
+    part: str
+    chosen: str
     result: str = "    result[{index}] = {value};"
-    alone: str = "    return {value};"  #: a result that is one number
-    frame_alone: str = ""  #: of a function with such a result, where it differs
+    alone: str = "    return {value};"
+    frame_alone: str = ""
     index: str = "{name}[{index}]"
-    start: int = 0  #: the first index
-    whole: str = "{}.0"  #: a whole number
+    start: int = 0
+    whole: str = "{}.0"
     functions: dict = field(default_factory=lambda: _SHORT)
 
 
@@ -108,10 +134,9 @@ LANGUAGES = {
 }  # fmt: skip
 
 _COMPARISONS = ("<", ">", ">=", "==")
-# How strongly an operation binds what it is applied to: sums, signs,
-# products, what needs no brackets.
+# How tightly an operation binds its operands: sums, signs, products, anything without brackets.
 _SUM, _SIGN, _PRODUCT, _ONE = range(4)
-#: How an operation is written, how strongly that binds, and how strongly each of its parts must.
+#: How an operation is written, how tightly it binds, and how tightly each operand must bind.
 _INFIX = {
     "+": ("{} + {}", _SUM, _SUM, _PRODUCT),
     "-": ("{} - {}", _SUM, _SUM, _PRODUCT),
@@ -123,10 +148,10 @@ _INFIX = {
 
 
 def written(language: Language, results: list, names: dict) -> tuple[list[str], list[str]]:
-    """The lines of the parts that the results need, each of them once, and the results themselves.
+    """Return the lines of the shared parts, each written once, and the results themselves.
 
-    What is used twice, and each choice, becomes a part. ``names``
-    says how each variable is written.
+    Any value that is used twice, and each choice, becomes a part. ``names`` says how each variable
+    is written.
     """
     uses, lines, texts = {}, [], {}
 
@@ -170,7 +195,7 @@ def written(language: Language, results: list, names: dict) -> tuple[list[str], 
             pattern, strength, *least = _INFIX[operation]
             return pattern.format(*map(write, parts, least)), strength
         if operation in ("and", "where"):
-            # Of a choice, the condition: what is chosen stands in a line of its own.
+            # For a choice, write only the condition: the alternatives have a line of their own.
             return " && ".join(map(write, parts[: 1 if operation == "where" else None])), _SUM
         return language.functions[operation].format(*map(write, parts)), _ONE
 
@@ -179,7 +204,7 @@ def written(language: Language, results: list, names: dict) -> tuple[list[str], 
 
 
 def _in_convention(kind, components, convention):
-    """Components of this book as another convention orders them."""
+    """Return components of this book in the order of another convention."""
     if kind == "matrix" and convention.get("matrix") == "transposed":
         return [components[3 * column + row] for row in range(3) for column in range(3)]
     if kind == "quaternion" and convention.get("scalar") == "last":
@@ -193,7 +218,7 @@ def formula_in(
     choice: str | None = None,
     **convention: str,
 ) -> str:
-    """A formula of the module as a function in another language.
+    """Return a formula of the module as a function in another language.
 
     Parameters
     ----------
@@ -202,10 +227,10 @@ def formula_in(
     name : str
         One of `orientation_workbench.formulas.FORMULAS`, a public function of ``orientation``.
     choice : str, optional
-        The sequence of Euler angles, or the axis, where the function takes one.
+        The sequence of Euler angles, or the axis, if the function takes one.
     **convention
-        ``matrix='transposed'``, ``scalar='last'``, ``unit='degrees'`` where the numbers are to come
-        and go so; the book's own convention is the default.
+        ``matrix='transposed'``, ``scalar='last'`` or ``unit='degrees'`` for the input and output;
+        the default is the book's own convention.
 
     Returns
     -------

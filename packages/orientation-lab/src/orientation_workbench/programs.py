@@ -1,24 +1,23 @@
-"""What the numbers of each program mean: one table, for the converter,
-the printed card and the workbench.
+"""What each program's numbers mean: the table of the converter, the printed card and the workbench.
 
-A program has a ``matrix`` (``'as here'``, or ``'transposed'`` where it gives the transpose of this
+A program has a ``matrix`` (``'as here'``, or ``'transposed'`` if it gives the transpose of this
 book's ${}^A\\mathbf{C}^N$), a ``scalar`` (``'first'`` or ``'last'``) and a ``unit`` of its angles.
-Its ``lines`` are the forms that it takes, each with the line of code for it. In a line, ``{w} {x}
-{y} {z}`` are the parts of a quaternion or of a vector, ``{a} {b} {c}`` three angles in the order of
-the turns and ``{ax} {ay} {az}`` the same by their axes; ``{s}`` is the sequence, ``{S}`` the same
-in capitals, ``{A} {B} {C}`` its letters, ``{i} {j} {k}`` their numbers from 0; ``{m}`` a matrix,
-row by row, and ``{t}`` its nine numbers column by column; ``{-a}`` is what ``{a}`` is with the
-other sign. ``sequences`` names the only ones where there are not all twelve. ``version`` is the one
-that was run, by ``python -m tools.programs``, and empty where the table follows the manual alone,
-which is at ``manual`` and was read in November 2026.
+Its ``lines`` are the forms that it takes, each with a line of code. In a line, ``{w} {x} {y} {z}``
+are the components of a quaternion or a vector, ``{a} {b} {c}`` three angles in the order of the
+rotations and ``{ax} {ay} {az}`` the same by axis; ``{s}`` is the sequence, ``{S}`` the same in
+capitals, ``{A} {B} {C}`` its letters, ``{i} {j} {k}`` their numbers from 0; ``{m}`` is a matrix row
+by row, and ``{t}`` its nine numbers column by column; ``{-a}`` is ``{a}`` with the opposite sign.
+``sequences`` lists the sequences of a program that does not have all twelve. ``version`` is the one
+that ``python -m tools.programs`` ran; it is empty if the table follows the manual alone, which is
+at ``manual`` and was read in November 2026.
 
-What two programs can be expected to differ by is said by some more, each left out where the manual
-has nothing on it: ``angles`` are the choices for three numbers by that program, as
-`orientation_workbench.mismatch.table.KINDS` calls them; ``three numbers`` says that they are a
-rotation vector; ``printed`` is the order in which it prints a quaternion, if it takes it in
-another; ``inverse`` are forms, besides the matrix, that mean the inverse of this book's; ``body``
-and ``world`` are where x, y and z of a thing and of its world point to. East counts as forward
-there and north as left, as ROS has it.
+More keys say how two programs may differ, each left out if the manual does not mention it:
+``angles`` are the program's choices for three numbers, as in
+`orientation_workbench.mismatch.table.KINDS`; ``three numbers`` says that they are a rotation
+vector; ``printed`` is the order in which it prints a quaternion, if it takes it in another;
+``inverse`` lists forms, besides the matrix, that mean the inverse of this book's; ``body`` and
+``world`` are the directions of x, y and z of an object and of its world. There, as in ROS, east
+counts as forward and north as left.
 """
 
 FLU, FRD, RDF = (
@@ -33,10 +32,10 @@ FORMS = ("matrix", "quaternion", "body fixed angles", "space fixed angles", "axi
 TAIT_BRYAN = ["xyz", "yzx", "zxy", "xzy", "zyx", "yxz"]
 OTHER = "another program"
 
-#: What each program, by its name, means by its numbers: its ``matrix`` (``'as here'`` or
-#: ``'transposed'``), where the ``scalar`` of its quaternions stands, the ``unit`` of its angles,
-#: the ``lines`` of code for each form, the ``version`` that was run and the ``manual``. The head of
-#: the file explains every entry.
+#: What each program's numbers mean, by the program's name: ``matrix`` (``'as here'`` or
+#: ``'transposed'``), the place of the ``scalar`` part of its quaternions, the ``unit`` of its
+#: angles, the ``lines`` of code for each form, the ``version`` that was run and the ``manual``. The
+#: module's docstring explains every entry.
 PROGRAMS = {
     "this book": {
         "version": "",
@@ -448,13 +447,12 @@ PROGRAMS = {
 
 
 def program_named(words):
-    """The one program whose name has these words at the start of one
-    of its own, whatever their case.
+    """Return the one program with these words in its name, from the start of a word, in any case.
 
     Raises
     ------
     ValueError
-        If none has, or several.
+        If no program or several programs match.
     """
     given = words.casefold()
     exact = [program for program in PROGRAMS if program.casefold() == given]
@@ -470,7 +468,7 @@ def program_named(words):
 
 
 def expected_of(program):
-    """What the numbers of a program mean by its manual, in the words of the table of mix-ups."""
+    """Return what a program's numbers mean by its manual, in the words of the table of mix-ups."""
     facts = PROGRAMS[program]
     order = facts.get("printed") or {"first": "wxyz", "last": "xyzw", "": None}[facts["scalar"]]
     return {

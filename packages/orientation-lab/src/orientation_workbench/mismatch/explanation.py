@@ -1,6 +1,4 @@
-"""The answer: what two programs mean differently by the numbers
-that they give for the same poses.
-"""
+"""Explain what two programs mean differently by the numbers they give for the same poses."""
 
 import itertools
 import math
@@ -17,15 +15,13 @@ from .mounting import mountings
 from .table import TURNS
 from .text import SLACK, read_poses
 
-#: Of so many chains, and of so many readings of the first side, it is seen whether a further pose
-#: tells the chains apart; more are told apart by a pose of three turns.
+#: The most chains, and the most readings of the first side, for which we look for a pose that
+#: distinguishes the chains; above that we ask for a pose of three rotations.
 LOOKED_AT, READ_AS = 300, 60
 
 
 class Name(NamedTuple):
-    """One description of a mix-up: on what condition it is right, the faults, and for both sides
-    what to declare if the condition holds.
-    """
+    """A description of a mix-up: its condition, its faults, and what to declare if it holds."""
 
     condition: str
     faults: tuple[str, ...]
@@ -37,11 +33,11 @@ class Explanation(NamedTuple):
 
     ``verdict`` is ``'same'``, ``'named'``, ``'undecided'`` or ``'unrelated'``. ``chains`` holds one
     chain for each reading of the numbers that is left, simplest first, and ``faults`` the words of
-    the first. ``further_pose`` says which pose would decide between them, and is empty where
-    nothing is open. ``residual`` is what is left by the first chain, in degrees. ``mirrored`` names
-    the side, ``'first'`` or ``'second'``, whose matrix has the determinant -1 where the other's has
-    not; else it is empty. ``names`` are the descriptions of one and the same relation between which
-    only a reader can choose, by an answer to ``question``.
+    the first. ``further_pose`` says which pose would decide between them, and is empty if nothing
+    is open. ``residual`` is the residual of the first chain, in degrees. ``mirrored`` names the
+    side, ``'first'`` or ``'second'``, whose matrix alone has the determinant -1, and is empty if
+    there is none. ``names`` are descriptions of the same relation that only a reader can choose
+    between, by answering ``question``.
     """
 
     verdict: str
@@ -57,7 +53,7 @@ class Explanation(NamedTuple):
 
     @property
     def has_line(self) -> bool:
-        """Whether one line makes of the second side's numbers the first's."""
+        """Whether one line of code turns the second side's numbers into the first's."""
         known = self.verdict == "named" or bool(self.names)
         return known and "inside" not in self.chains[0].relation
 
@@ -80,15 +76,15 @@ def explain(
     Parameters
     ----------
     first, second : str, or array of shape ``(count,)``, ``(3, 3)`` or ``(poses, ...)``
-        What each program gives. Text is read by its digits: what the last one leaves open counts as
-        rounding. Numbers as such are taken to be exact to single precision.
+        What each program gives. In text, anything smaller than the last digit counts as rounding.
+        Arrays are taken to be exact to single precision.
     first_declared, second_declared : dict, optional
-        What is known of a program, such as ``{'kind': 'Euler angles', 'sequence': 'zyx'}``: the
+        What is known about a program, such as ``{'kind': 'Euler angles', 'sequence': 'zyx'}``: the
         groups and choices of `orientation_workbench.mismatch.table.KINDS`.
     first_program, second_program : str, optional
-        Names of `orientation_workbench.programs.PROGRAMS`, or a part of one. What a program's
-        manual says of its numbers is no mix-up then; if both are named, neither is what their
-        manuals differ by.
+        Names from `orientation_workbench.programs.PROGRAMS`, or parts of them. What a program's
+        manual says about its numbers is then not a mix-up; nor is, if both are named, a difference
+        between their manuals.
     noise : float
         Radians by which the two may differ besides rounding.
 
@@ -100,7 +96,7 @@ def explain(
     ------
     ValueError
         If numbers cannot be read as orientations, the two sides hold different numbers of poses, or
-        a program is not known.
+        a program is unknown.
 
     Examples
     --------
@@ -122,7 +118,7 @@ def explain(
         # The text overrides the manual, and the reader overrides both.
         sides.append((poses, (manual["declared"] if manual else {}) | poses.declared | declared))
     counts = [len(poses.numbers) for poses, _ in sides]
-    # Three rows that are no matrix were taken for three triples of angles.
+    # Three rows that are not a matrix were read as three triples of angles.
     if sorted(counts) == [1, 3]:
         side = counts.index(3)
         sides[side] = (
@@ -156,7 +152,7 @@ def explain(
         return Explanation("unrelated", (), None, (), "", counts[0], mirrored)
     best = classes[0]
     chance = _chance(best, one, tried)
-    # Of a special pose some sequence nearly always says the same.
+    # For a special pose, some sequence nearly always gives the same numbers.
     exact = noise == 0 or chance < search.BY_CHANCE
     if best.faults == 0 and exact and not (special and best.words(ways)):
         verdict = "same"
@@ -180,7 +176,7 @@ def explain(
 
 
 def _normalised(sides):
-    """A word for each side whose quaternions are not quite of length 1."""
+    """Return a remark for each side whose quaternions are not quite of length 1."""
     remarks = []
     for name, (poses, _) in zip(("first", "second"), sides, strict=True):
         lengths = np.linalg.norm(poses.numbers, axis=1)
@@ -192,8 +188,8 @@ def _normalised(sides):
     return tuple(remarks)
 
 
-#: A reading that leaves so many times what the best leaves, and more than a thousandth, is put
-#: behind those that fit exactly.
+#: A reading goes behind those that fit exactly if its residual is more than this many times the
+#: best one's, and above a thousandth.
 EXACT = 20
 
 
@@ -203,8 +199,9 @@ def _exact_first(chains):
 
 
 def _chance(best, first, tried):
-    """How many chains of so few faults would fit as well by chance, were the second side's poses
-    unrelated ones that move as far as the first side's.
+    """Estimate how many chains of so few faults would fit as well by chance.
+
+    This supposes that the second side's poses are unrelated, but move as far as the first side's.
     """
     dcms = first.dcms[next(k for k, one in enumerate(first.readings) if one is best.first)]
     gap = max(best.residual, search.SINGLE_PRECISION, min(first.doubts))
@@ -216,8 +213,10 @@ def _chance(best, first, tried):
 
 
 def _is_special(poses):
-    """Whether all poses share what leaves several readings open: an angle or a part that is zero,
-    or two that are alike, as for turns about one axis, half and quarter turns.
+    """Check whether all poses share a property that leaves several readings open.
+
+    That is an angle or component that is zero, or two that are equal, as in rotations about one
+    axis, half turns and quarter turns.
     """
     sizes, near = np.abs(poses.numbers), 2 * poses.half + search.SINGLE_PRECISION
     pairs = itertools.combinations(range(sizes.shape[1]), 2)
@@ -229,17 +228,19 @@ def _is_special(poses):
 
 # --- descriptions between which only the reader can choose ----------------------------------------
 
-#: A description that costs so much more than the simplest is left out; the second holds unless both
-#: sides are read otherwise in the same way.
+#: A description is left out if it costs this much more than the simplest. The second limit holds if
+#: only one of the two descriptions has both sides read in the same order.
 DEARER, DEARER_ON_ONE_SIDE = 1.15, 0.4
-#: The same where two quaternions exchange their orders.
+#: The first limit if both sides are quaternions, in different orders.
 DEARER_CROSSED = 1.7
 _ORDERS = {"wxyz": "first", "xyzw": "last"}
 
 
 def _names(best, others, ways):
-    """Descriptions of one relation that differ in the axes that they name, in sequences, or in the
-    side whose angles are space fixed; none if all agree.
+    """Return descriptions of one relation that differ in a way only a reader can decide.
+
+    They differ in axes, in sequences, or in which side's angles are space fixed; there are none if
+    all agree.
     """
     names, seen = [], set()
     near = [
@@ -264,7 +265,7 @@ def _names(best, others, ways):
 
 
 def _usual_order(chain, known):
-    """Whether the scalar parts stand where they are known to stand, or else first or last."""
+    """Check that the scalar parts are in their declared place, or else first or last."""
     orders = [reading["choices"].get("order") for reading in (chain.first, chain.second)]
     return all(
         order is None or order == declared or (declared is None and order in _ORDERS)
@@ -273,16 +274,17 @@ def _usual_order(chain, known):
 
 
 def _both(chain, group):
-    """What both sides choose in a group, if they differ in it."""
+    """Return both sides' choices in a group if they differ."""
     chosen = [reading["choices"].get(group) for reading in (chain.first, chain.second)]
     return tuple(chosen) if None not in chosen and chosen[0] != chosen[1] else ()
 
 
 def _of_angles(chain):
-    """The group in which two triples of Euler angles differ and only a reader can choose, and both
-    choices: their sequences, unless one is declared, because the numbers stay the same if the axes
-    of both sides are renamed alike; else which of them is space fixed. Both are empty if there is
-    nothing to choose.
+    """Return the group and the choices that only a reader can decide for two triples of angles.
+
+    The choice is between their sequences unless one is declared, because the numbers stay the same
+    if the axes of both sides are renamed alike; otherwise it is which of them is space fixed. Both
+    are empty if there is nothing to choose.
     """
     declared = chain.first["codes"][-1] or chain.second["codes"][-1]
     for group in (TURNS,) if declared else ("sequence", TURNS):
@@ -292,7 +294,7 @@ def _of_angles(chain):
 
 
 def _limit(chain, best):
-    # Whether both sides store a quaternion in one order, or neither holds one.
+    # Whether both sides store a quaternion in the same order, or neither has one.
     shared, of_best = (
         each.first["choices"].get("order") == each.second["choices"].get("order")
         for each in (chain, best)
@@ -302,13 +304,13 @@ def _limit(chain, best):
 
 
 def _dearness(chain):
-    """What a chain costs, but for which way a matrix leads beside numbers that are none."""
+    """Return a chain's cost, ignoring the direction of a matrix if the other side has none."""
     free = chain.relation["inverse"] and (chain.kinds.count("matrix") == 1)
     return chain.cost - free
 
 
 def _name(chain, inverses, faults, by_way, best):
-    """A description with its condition, and with what the reader can declare for it."""
+    """Return a description with its condition, and with what the reader can declare for it."""
     orders = [reading["choices"].get("order") for reading in (chain.first, chain.second)]
     declare, conditions = tuple({"order": order} if order else {} for order in orders), []
     if any(orders):
@@ -366,7 +368,7 @@ def _question(names, best):
 
 
 def _classes(chains, sides):
-    """Chains that do the same to whatever is pasted, together; simplest first."""
+    """Group chains that are equivalent for all numbers, simplest first."""
     classes, owner = [], {}
     samples = {
         kind: _samples(kind, sides[0][0]) for kind in {chain.first["kind"] for chain in chains}
@@ -381,13 +383,12 @@ def _classes(chains, sides):
 
 
 def _predictions(chains, samples, decimals):
-    """What each chain predicts that the second side gives where the first
-    gives these numbers, as sets of keys.
+    """Return, as sets of keys, what each chain predicts for the second side from these numbers.
 
-    Two chains that share a key are mathematically the same, if the numbers are not special: both
-    may print the same (an orientation has two triples of Euler angles, and either may be printed).
-    What the second side would write is read by one plain reading, whichever reading the chain has:
-    that makes the keys comparable.
+    Two chains that share a key are mathematically the same, if the numbers are not special. A chain
+    may have two keys, because an orientation has two triples of Euler angles and a program may
+    print either. Predictions are always written in one plain reading, whichever reading the chain
+    has, so that the keys are comparable.
     """
     dcms, members = {}, {}
     for which, chain in enumerate(chains):
@@ -418,7 +419,7 @@ def _predictions(chains, samples, decimals):
 
 
 def _related(relation, dcms):
-    """The second side's orientations of the first side's."""
+    """Return the second side's orientations, given the first side's."""
     if inside := relation.get("inside"):
         dcms = search.after_inside(inside, dcms)
     left, right = (
@@ -435,7 +436,7 @@ def _plain_reading(kind):
 
 
 def _samples(kind, poses):
-    """Numbers of one kind for two orientations, neither of them special."""
+    """Return numbers of one kind for two generic orientations."""
     dcms, plain = random_orientations(2, np.random.default_rng(20)), _plain_reading(kind)
     if kind == "matrix" and np.linalg.det(poses.numbers[0].reshape(3, 3)) < 0:
         dcms = -dcms
@@ -448,13 +449,13 @@ def _samples(kind, poses):
 
 
 def _further_pose(chains, readings, sides):
-    """Words for a pose, from the last one pasted, at which the chains that are left would disagree.
+    """Describe a pose, starting from the last one, at which the remaining chains would disagree.
 
-    Whichever chain is true, the thing is turned as the words say; what the first program then gives
-    depends on how its numbers are to be read. So the pose must decide by each reading of the first
-    side that fits, also by those that say the same as another.
+    Whichever chain is true, the object is rotated as described, but what the first program then
+    gives depends on how its numbers are read. So the pose must decide under every reading of the
+    first side that fits, including those that are equivalent to another.
     """
-    # From a special pose a turn or two leave zeros in one side's numbers: special again.
+    # Starting from a special pose, a rotation or two leave zeros in one side's numbers.
     special = any(_is_special(poses) for poses, _ in sides)
     if special or len(chains) > LOOKED_AT or len(readings) > READ_AS or len(chains) == 1:
         return table.FURTHER_POSES[-1][0]
@@ -468,9 +469,7 @@ def _further_pose(chains, readings, sides):
 
 
 def _turned(reading, numbers, turns):
-    """What the first program gives after some turns about the body's own
-    axes, by one reading of its numbers.
-    """
+    """Return what the first program gives, by one reading, after rotations about body axes."""
     dcm = dcms_from_numbers(reading, numbers)[0]
     hand = 1.0 if np.linalg.det(dcm) > 0 else -1.0
     dcm = nearest_dcm(hand * dcm).dcm
@@ -490,7 +489,7 @@ def _tells_apart(chains, samples):
 
 
 def sentences(explanation):
-    """The answer as a reader is told it, a sentence a line."""
+    """Yield the answer for a reader, one sentence at a time."""
     several = f"these {explanation.poses} poses" if explanation.poses > 1 else "this pose"
     left = len(explanation.chains)
     more = f"{left - 1} other reading{'s' * (left != 2)}"
@@ -540,7 +539,7 @@ def sentences(explanation):
 
 
 def _condition(name):
-    """The condition, with how it is declared to the command."""
+    """Return the condition, with the options that declare it to the command."""
     words = [
         f"--{side}-is " + (f'"{value}"' if " " in value else value)
         for side, declared in zip(("first", "second"), name.declare, strict=True)

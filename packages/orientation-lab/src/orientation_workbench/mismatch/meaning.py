@@ -1,4 +1,4 @@
-"""What numbers mean by a reading: a direction cosine matrix, and the way back."""
+"""Convert numbers to direction cosine matrices by a reading, and back."""
 
 import math
 
@@ -17,7 +17,7 @@ from orientation import (
 
 
 def _angles_and_sequence(choices, numbers):
-    """The three turns in their order, in radians and body fixed, and the sequence of their axes."""
+    """Return the three rotations in order, in radians and body fixed, and their sequence."""
     places, signs = choices["places"], choices["signs"]
     turns = np.stack([numbers[..., places.index(which)] for which in "123"], axis=-1)
     turns = turns * [-1.0 if sign == "-" else 1.0 for sign in signs]
@@ -32,19 +32,19 @@ def _radians(choices):
 
 
 def dcms_from_numbers(reading, numbers):
-    r"""Matrices ${}^A\mathbf{C}^N$ that numbers mean by one reading.
+    r"""Return the matrices ${}^A\mathbf{C}^N$ that numbers mean by one reading.
 
     Parameters
     ----------
     reading : dict
-        As `orientation_workbench.mismatch.table.readings` lists them.
+        An entry of the list that `orientation_workbench.mismatch.table.readings` returns.
     numbers : array of shape ``(poses, count)``
-        Quaternions need not be of unit length, nor axes.
+        Quaternions and axes need not be of unit length.
 
     Returns
     -------
     array of shape ``(poses, 3, 3)``
-        A pasted matrix is taken as it is, whatever its hand.
+        A given matrix is returned unchanged, even if it is left-handed.
     """
     kind, choices = reading["kind"], reading["choices"]
     if kind == "matrix":
@@ -63,8 +63,7 @@ def dcms_from_numbers(reading, numbers):
 
 
 def numbers_from_dcms(reading, dcms):
-    """All numbers by which a reading writes orientations: two triples of
-    Euler angles, otherwise one item.
+    """Return the numbers of orientations by a reading; Euler angles have two triples.
 
     Parameters
     ----------
@@ -101,7 +100,7 @@ def numbers_from_dcms(reading, dcms):
 
 
 def doubt(reading, half):
-    """How far an entry of the matrix may be off, if each number is off by at most ``half``."""
+    """Bound the error of a matrix entry if each number is off by at most ``half``."""
     unit = _radians(reading["choices"])
     times = {"matrix": 1, "quaternion": 4, "axis and angle": 4 + unit}
     return times.get(reading["kind"], 3 * unit) * half

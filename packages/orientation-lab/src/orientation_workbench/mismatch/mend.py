@@ -1,7 +1,7 @@
-"""The one line that mends a mix-up: in NumPy with SciPy, and as a formula.
+"""Write one line that fixes a mix-up, in NumPy with SciPy, and as a formula.
 
-Each line makes of ``second``, what the second program gives, what the first program gives for the
-same pose.
+Each line turns ``second``, which the second program gives, into what the first program gives for
+the same pose.
 """
 
 import numpy as np
@@ -36,9 +36,7 @@ def _pick(name, places):
 
 
 def _read_in_python(reading, name):
-    """Code for the matrix of this book, A_C_N, of what a program
-    gives. SciPy's is its transpose.
-    """
+    """Return code for the book's matrix, A_C_N, of a program's numbers. SciPy transposes it."""
     kind, choices = reading["kind"], reading["choices"]
     if kind == "matrix":
         return name
@@ -57,11 +55,11 @@ def _read_in_python(reading, name):
 
 
 def _write_in_python(reading, matrix):
-    """Code that writes a matrix of this book as a program does."""
+    """Return code that writes a matrix of this book as a program does."""
     kind, choices = reading["kind"], reading["choices"]
     if kind == "matrix":
         return matrix
-    # The transpose of a transpose is not written.
+    # Avoid writing the transpose of a transpose.
     bare = f"({matrix})" if "@" in matrix else matrix
     there = matrix[:-2] if matrix.endswith(".T") and "@" not in matrix else f"{bare}.T"
     if kind == "quaternion":
@@ -78,7 +76,7 @@ def _write_in_python(reading, matrix):
 
 
 def _undo_in_python(relation, matrix):
-    """Code for the first side's matrix, from code for the second's."""
+    """Return code for the first side's matrix, given code for the second's."""
     if relation.get("body turn") is not None:
         matrix = f"{_array(np.round(relation['body turn'].T, 6))} @ {matrix}"
     if relation.get("world turn") is not None:
@@ -93,7 +91,7 @@ def _undo_in_python(relation, matrix):
 
 
 def python_line(chain):
-    """One line of Python that gives what the first program gives, from ``second``."""
+    """Return one line of Python that computes what the first program gives from ``second``."""
     relation, first, second = chain.relation, chain.first, chain.second
     plain = relation["body"] == relation["world"] == table.SAME_AXES
     plain &= "body turn" not in relation
@@ -106,9 +104,7 @@ def python_line(chain):
 
 
 def formula(chain):
-    """How the second program's matrix follows from the first's, with the
-    signed permutations written out.
-    """
+    """Return a formula for the second program's matrix in terms of the first's."""
     relation, parts = chain.relation, []
     for whose in ("body", "world"):
         rows = relation.get(f"{whose} turn")

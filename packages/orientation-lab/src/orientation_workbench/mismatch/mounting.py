@@ -1,4 +1,4 @@
-"""A constant turn before or after (a mounting, a hand and an eye): what only several poses tell."""
+"""Constant rotations before or after (mounting, hand-eye), which only several poses determine."""
 
 import itertools
 
@@ -9,16 +9,18 @@ from orientation import dcm_from_two_directions, nearest_dcm, rotation_vector_fr
 from .search import SINGLE_PRECISION, Chain
 from .table import MOST_FAULTS, SAME_AXES, of_both
 
-#: So many poses leave something over to check by, once a constant turn has been found from them.
+#: The fewest poses that leave redundancy to check a constant rotation found from them.
 ON_ONE_SIDE, ON_BOTH_SIDES = 3, 4
 
 
 def mountings(first, second, noise):
-    """All chains with a constant turn on one side or on both that fit every pose, cheapest first.
+    """Return all chains with constant rotations that fit every pose, cheapest first.
 
-    From $\\mathbf{M}_2 = \\mathbf{L}\\,\\mathbf{M}_1\\,\\mathbf{R}$ at three poses or more follow
-    the constant turns $\\mathbf{L}$ and $\\mathbf{R}$. What is found from some poses must hold at
-    all of them.
+    The rotations are on one side or on both.
+
+    The constant rotations $\\mathbf{L}$ and $\\mathbf{R}$ follow from
+    $\\mathbf{M}_2 = \\mathbf{L}\\,\\mathbf{M}_1\\,\\mathbf{R}$ at three or more poses. A rotation
+    found from some poses must hold at all of them.
     """
     if first.dcms.shape[1] < ON_ONE_SIDE:
         return []
@@ -51,14 +53,14 @@ def mountings(first, second, noise):
 
 
 def _constant_turns(start, end):
-    """Candidates for the two constant turns: on the body's side, on the world's, on both."""
+    """Yield candidates for the two constant rotations: on the body's side, the world's, or both."""
     across = np.swapaxes(start, -1, -2)
     yield (end @ across)[0], None
     yield None, (across @ end)[0]
     if len(start) < ON_BOTH_SIDES:
         return
-    # Turns since the first pose have the same angle on both sides; their
-    # axes differ by the constant turn.
+    # Rotations since the first pose have the same angle on both sides, and their axes differ by the
+    # constant rotation.
     moved = [
         rotation_vector_from_dcm(nearest_dcm(dcms[1:] @ dcms[0].T).dcm) for dcms in (start, end)
     ]
@@ -66,7 +68,8 @@ def _constant_turns(start, end):
     apart = np.linalg.norm(np.cross(moved[0], moved[0][largest]), axis=1)
     second = int(np.argmax(apart))
     if apart[second] < 1e-3:
-        return  # all poses turn about one axis: the constant turn about it is free
+        # All poses rotate about one axis, so the constant rotation about it is undetermined.
+        return
     before, after = ([vectors[largest], vectors[second]] for vectors in moved)
     if min(np.linalg.norm(np.cross(*pair)) for pair in (before, after)) < 1e-6:
         return

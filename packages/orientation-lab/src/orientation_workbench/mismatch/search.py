@@ -1,4 +1,4 @@
-"""The search: every chain of at most three faults that explains the numbers, simplest first."""
+"""Search for every chain of at most three faults that explains the numbers, simplest first."""
 
 import functools
 import itertools
@@ -21,22 +21,22 @@ from orientation import (
 from . import table
 from .meaning import dcms_from_numbers, doubt
 
-#: What is left of a computation in single precision when all its digits are printed.
+#: The rounding error of a single-precision computation whose digits are all printed.
 SINGLE_PRECISION = 2e-6
-#: Readings of the second side that are compared at a time.
+#: How many readings of the second side are compared at a time.
 BLOCK = 200
 #: A chain is named only if fewer than this many are expected to fit unrelated numbers by chance.
 BY_CHANCE = 1e-3
-#: Of more chains than these nothing more is learned.
+#: More chains than these add no information.
 MANY = 500
 #: The bit for scalar-last order, which both sides of a quaternion may share.
 QUATERNION_SHARED = 1 << table.SHARED.index(("order", "xyzw"))
-#: A reading counts only if the thing moves by so many times what the numbers leave open.
+#: A reading counts only if the motion is at least this many times the uncertainty of the numbers.
 MOTION = 3
 
 
 class Chain(NamedTuple):
-    """One explanation: how each side is read, and how the two orientations belong together."""
+    """One explanation: how to read each side, and how their orientations are related."""
 
     first: dict
     second: dict
@@ -47,9 +47,7 @@ class Chain(NamedTuple):
 
     @property
     def cost(self):
-        """One for each fault, and how rare they are. Tenths: what addition
-        leaves besides decides nothing.
-        """
+        """One for each fault, plus their rarity, rounded to ignore the errors of addition."""
         return round(self.faults + self.rarity, 6)
 
     @property
@@ -57,7 +55,7 @@ class Chain(NamedTuple):
         return self.first["kind"], self.second["kind"]
 
     def words(self, ways=(None, None), which=0):
-        """The faults, each as a phrase; where body and world may change places, one of the ways."""
+        """Return the faults as phrases; ``which`` chooses if body and world may be swapped."""
         *_, sides = table.of_both(self.first, self.second)
         swapped = table.second_is_inverse(self.relation, self.kinds, ways)
         return sides + table.words_of(self.relation, self.kinds, swapped[which])
@@ -65,9 +63,7 @@ class Chain(NamedTuple):
 
 @functools.cache
 def _relations(mirrored, expected):
-    """The relations, by how far each is from the expected one, and their
-    two signed permutations as stacks.
-    """
+    """Return the relations relative to the expected one, with their matrices as stacks."""
     aside = table.left_handed(expected[1]) != table.left_handed(expected[2])
     entries = [table.beyond(entry, expected) for entry in table.relations(mirrored != aside)]
     left = np.array([table.axes_matrix(entry["body"]) for entry in entries], float)
@@ -78,9 +74,7 @@ def _relations(mirrored, expected):
 
 
 class Side(NamedTuple):
-    """One side as the search needs it: its readings, their
-    matrices at each pose, and their doubt.
-    """
+    """One side in the search: its readings, their matrices at each pose, and their doubt."""
 
     readings: list
     dcms: np.ndarray
@@ -88,23 +82,23 @@ class Side(NamedTuple):
 
 
 def side(kinds, numbers, half, declared, noise):
-    """Read the numbers of one side in every way.
+    """Read the numbers of one side in every possible way.
 
     Parameters
     ----------
     kinds : sequence of str
-        The kinds that the numbers may be of.
+        The possible kinds of the numbers.
     numbers : array of shape ``(poses, count)``
     half : float
         Half a unit of the last digit printed.
     declared : dict
-        What is known of the program's convention.
+        What is known about the program's convention.
     noise : float
         Radians by which the two sides may differ.
     """
     listed = []
     for kind in kinds:
-        # Of an axis and its angle, wherever that stands, only the angle can be large.
+        # Of an axis and its angle, in either order, only the angle can be large.
         large = kind != "quaternion" and bool((np.abs(numbers) > math.tau + 0.01).any())
         listed += table.readings(kind, declared, large)
     cheapest = {}
@@ -117,10 +111,11 @@ def side(kinds, numbers, half, declared, noise):
     doubts = np.array([doubt(reading, half) for reading in readings])
     if not noise:
         return Side(readings, dcms, doubts)
-    # Small angles that are taken for degrees hardly move: within the noise anything fits them.
+    # Small angles read as degrees hardly move, and within the noise anything fits them.
     moves = np.array([motion(each) for each in dcms])
     some = moves >= MOTION * (doubts + noise)
-    # That refuses all where it holds of a reading that is no mix-up, or none if both sides have it.
+    # Refuse the input if this would exclude a reading that is not a fault, or one that both sides
+    # may share.
     if any(
         not enough and (reading["faults"] == 0 or reading["shared"] & QUATERNION_SHARED)
         for reading, enough in zip(readings, some, strict=True)
@@ -134,7 +129,7 @@ def side(kinds, numbers, half, declared, noise):
 
 
 def motion(dcms):
-    """Radians of the largest turn in some poses, whatever their hand."""
+    """Return the largest angle of rotation in some poses, in radians, whatever their handedness."""
     hand = np.sign(np.linalg.det(dcms[0]))
     across = np.linalg.norm(hand * dcms - np.eye(3), axis=(1, 2)).max()
     return float(2 * np.arcsin(min(1.0, across / math.sqrt(8))))
@@ -145,7 +140,7 @@ def _price(reading):
 
 
 def _reading_key(reading):
-    """Readings that mean the same by any numbers: space fixed is body fixed from behind."""
+    """Return a key shared by equivalent readings: space fixed is body fixed in reverse order."""
     choices = dict(reading["choices"])
     if choices.get("axes of the turns") == "space fixed":
         turned = str.maketrans("123", "321")
@@ -159,27 +154,26 @@ def _reading_key(reading):
 
 
 def chains(first, second, noise, expected, special):
-    """All chains that fit every pose, cheapest first; and how many were
-    tried with each number of faults.
+    """Return all chains that fit every pose, cheapest first, and how many were tried by faults.
 
     Parameters
     ----------
     first, second : Side
     noise : float
-        Radians by which the orientations may differ besides the rounding of what is printed.
+        Radians by which the orientations may differ besides the rounding of the printed numbers.
     expected : tuple
-        What the programs differ by in any case:
+        The difference that the programs' manuals predict:
         `orientation_workbench.mismatch.table.expected_relation`.
     special : bool
-        Whether the poses leave several readings open, however neat one is.
+        Whether the poses leave several readings open, however simple one is.
     """
     hands = [np.linalg.det(one.dcms[0, 0]) > 0 for one in (first, second)]
     relations, left, right, inverse, relation_faults = _relations(hands[0] != hands[1], expected)
     exactly = [np.flatnonzero(relation_faults == count) for count in range(table.MOST_FAULTS + 1)]
     left_first, fits, pairs = np.swapaxes(first.dcms, -1, -2), [], []
     tried = np.zeros(table.MOST_FAULTS + 1)
-    # Signed permutations and the transpose leave the sum of fourth
-    # powers alone: most pairs fall here.
+    # Signed permutations and the transpose preserve the sum of fourth powers, which excludes most
+    # pairs.
     fourth = [(one.dcms**4).sum(axis=(2, 3)) for one in (first, second)]
     for i, both in enumerate(_faults_of_pairs(first, second)):
         tolerance = np.maximum(first.doubts[i] + second.doubts, SINGLE_PRECISION) + noise
@@ -194,7 +188,7 @@ def chains(first, second, noise, expected, special):
     lowest = table.MOST_FAULTS
     angles = max(len(first.readings), len(second.readings)) > len(_ORDERS)
     for level in range(table.MOST_FAULTS + 1):
-        # Angles have a thousand readings: what takes two faults more than the simplest is not said.
+        # Angles have a thousand readings, so we drop those with two faults more than the simplest.
         if (level > lowest + 1 or len(fits) > MANY) and angles:
             break
         for i, near, both, tolerance in pairs:
@@ -215,7 +209,7 @@ def chains(first, second, noise, expected, special):
                             fits.append(_chain(*readings, relations[k], gap))
         if fits:
             lowest = min(lowest, level)
-    # Of a special pose they would say nothing that other readings do not say as well.
+    # For a special pose these would add nothing to the other readings.
     if hands[0] == hands[1] and not (special and fits):
         inside, more = _inside(first, second, noise)
         fits += [chain for chain in inside if not fits or chain.faults <= lowest]
@@ -237,7 +231,7 @@ def _chain(first, second, relation, gap):
 
 
 def _faults_of_pairs(first, second):
-    """Faults of each reading of the first side with each of the second side's."""
+    """Count the faults of each reading of the first side with each of the second side's."""
     faults, shared, codes = (
         [np.array([reading[what] for reading in one.readings]) for one in (first, second)]
         for what in ("faults", "shared", "codes")
@@ -252,18 +246,20 @@ def _faults_of_pairs(first, second):
 
 _ORDERS = table.KINDS["quaternion"][0]["choices"]
 _PERMUTED = ["".join(places) for places in itertools.permutations("123")]
-#: Scalar last read as scalar first, and the other way round.
+#: Scalar last read as scalar first, and the reverse.
 _MISREAD = ("xyzw", "zwxy")
-#: Angles on the way come back with this much more doubt, where the middle
-#: one is not far from its singularity.
+#: How much more doubt angles have after the conversion, which grows near the middle one's
+#: singularity.
 _LOOSER = 6
 
 
 @functools.cache
 def _inner_relations():
-    """What can go wrong between two programs that hand on angles or a quaternion, and get a matrix
-    or a quaternion out: read by one sequence and put together by another, or scalar first for last.
-    First as it is, then with the inverse besides.
+    """List the faults between two programs that exchange angles or a quaternion internally.
+
+    The output is a matrix or a quaternion. The angles are read by one sequence and built by
+    another, or scalar first is confused with scalar last. The list has each fault as it is, and
+    then with the inverse besides.
     """
     listed = []
     for read, built, places in itertools.product(SEQUENCES, SEQUENCES, _PERMUTED):
@@ -282,9 +278,7 @@ def _inner_relations():
 
 @functools.cache
 def _distinct():
-    """Which of them are to be tried: those that are no mere renaming of axes,
-    and the two known ones that are.
-    """
+    """Mark the relations to try, which are not mere renamings of axes except for two known ones."""
     dcm = random_orientations(1, np.random.default_rng(20))
     _, left, right, inverse, _ = _relations(False, table.expected_relation(None, None, ()))
     start = np.where(inverse[:, None, None], np.swapaxes(dcm, -1, -2), dcm)
@@ -300,7 +294,7 @@ def _distinct():
 
 
 def after_inside(inside, dcms):
-    """The orientations that come of reading and putting together by what ``inside`` names."""
+    """Return the orientations after reading and rebuilding them as ``inside`` says."""
     what, read, built, places = inside
     if what == "quaternion":
         return dcm_from_quaternion(
@@ -311,9 +305,7 @@ def after_inside(inside, dcms):
 
 
 def _all_inside(dcms):
-    """The same for all of `_inner_relations`, an array of
-    shape ``(relations, poses, 3, 3)``.
-    """
+    """Return the same for all of `_inner_relations`, an array ``(relations, poses, 3, 3)``."""
     dcms, permuted = nearest_dcm(dcms).dcm, [[int(k) - 1 for k in places] for places in _PERMUTED]
     made = []
     for read in SEQUENCES:
@@ -327,7 +319,7 @@ def _all_inside(dcms):
 
 
 def _inside(first, second, noise):
-    """The chains with one cause inside, and how many were tried with each number of faults."""
+    """Return the chains with one internal cause, and how many of each fault count were tried."""
     relations, fits = _inner_relations(), []
     tried = np.zeros(table.MOST_FAULTS + 1)
     handed_on = [
@@ -351,13 +343,13 @@ def _inside(first, second, noise):
             tolerance = max(first.doubts[i] + second.doubts[j], SINGLE_PRECISION) + noise
             tolerance *= _LOOSER
             gaps = np.abs(made - second.dcms[j]).max(axis=(1, 2, 3))
-            # A quaternion that stands on one side is read otherwise there, and not on the way.
+            # If one side gives a quaternion, the fault is in reading that side rather than inside.
             matrices = reading["kind"] == second.readings[j]["kind"] == "matrix"
             tried_here = _distinct() & [
                 matrices or relation["inside"][0] != "quaternion" for relation in relations
             ]
             tried[both + 1 : both + 3] += len(relations) / 2
-            # What changes nothing explains nothing.
+            # A relation that changes nothing explains nothing.
             fits += [
                 _chain(reading, second.readings[j], relations[k], gaps[k])
                 for k in np.flatnonzero((gaps <= tolerance) & (changes > tolerance) & tried_here)
@@ -366,8 +358,9 @@ def _inside(first, second, noise):
 
 
 def with_orders(best, first, second, noise, expected):
-    """The cheapest chain for each order, scalar first or last, of the quaternions in the best one,
-    also where it takes more faults than a chain may have.
+    """Return the cheapest chain for each order of the best one's quaternions.
+
+    The order is scalar first or last. A chain here may have more faults than usual.
     """
     hands = [np.linalg.det(one.dcms[0, 0]) > 0 for one in (first, second)]
     relations, left, right, inverse, _ = _relations(hands[0] != hands[1], expected)

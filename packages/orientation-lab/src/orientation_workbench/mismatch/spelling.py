@@ -1,12 +1,11 @@
-"""How programs print numbers: what is to be looked past, as patterns that
-Python and JavaScript both understand.
+"""How programs print numbers: patterns that both Python and JavaScript understand.
 
-Every pattern is tried without regard to case, with ``^`` and ``$`` at each line, letters and digits
-being those of ASCII. In a replacement ``$1`` is the first group.
+Every pattern ignores case, ``^`` and ``$`` match at each line, and letters and digits are those of
+ASCII. In a replacement ``$1`` is the first group.
 """
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
-#: What names of angles say: these are turns about z, y and x.
+#: What the names yaw, pitch and roll mean: rotations about z, y and x.
 YAW_PITCH_ROLL = {"sequence": "zyx", "axes of the turns": "body fixed", "places": "123"}
 
 _MINUTES = (
@@ -14,15 +13,14 @@ _MINUTES = (
     "degrees, which is 12 + 30/60 + 15/3600"
 )
 
-#: By its name each pattern, or a list of patterns, each with what it stands for or is replaced by.
+#: Each pattern by name, or a list of pairs of a pattern and its meaning or replacement.
 SPELLING = {
-    # A number as it stands in a text: no part of a name, with a unit
-    # or the suffix of a type behind it.
+    # A number that is not part of a name, perhaps followed by a unit or the suffix of a type.
     "number": rf"(?<![\w.]){NUMBER}(?=(?:[fld]|deg(?:rees)?|rad(?:ians)?)?(?![\w.]))",
     # A name and the number that follows it.
     "named": r"""["']?([a-z_][\w.]*)["')\]]*\s*[:=]?\s*[\[(]?\s*(?=[-+.]?[.\d])""",
     "comment": r"(#|//|%).*",
-    # Places, speeds and covariances, whose value stands behind their name, or below it, set in.
+    # Positions, velocities and covariances, whose value follows their name or is indented below it.
     "not turns": (
         r"""["']?\b\w*(?:position|translation|header|stamp|location|covariance|velocity|acceleration|scale|twist|linear"""
         r"""|angular|tvec)\w*["']?\s*[:=]\s*"""
@@ -30,37 +28,37 @@ SPELLING = {
     "value": r"""(?:\{[^}]*\}|\[[^\]]*\]|[\w.]*\([^)]*\)|"[^"\n]*")""",
     "degrees": r"\u00b0|\bdeg(?:rees)?\b|\d(?:deg)",
     "radians": r"\brad(?:ians?)?\b",
-    # Names of the three angles where none stands at its number: what that says of their order.
+    # Names of the three angles that appear apart from their numbers, and the order they imply.
     "orders of angles": (
         (r"\brpy\b|\broll\W{1,3}pitch\W{1,3}yaw\b", YAW_PITCH_ROLL | {"places": "321"}),
         (r"\bypr\b|\byaw\W{1,3}pitch\W{1,3}roll\b", YAW_PITCH_ROLL),
     ),
-    # The same of the four parts of a quaternion.
+    # The same for the four components of a quaternion.
     "orders of parts": (
         (r"\bq?_?w\W{1,3}q?_?x\W{1,3}q?_?y\W{1,3}q?_?z\b|\bwxyz\b", {"order": "wxyz"}),
         (r"\bq?_?x\W{1,3}q?_?y\W{1,3}q?_?z\W{1,3}q?_?w\b|\bxyzw\b", {"order": "xyzw"}),
     ),
-    # A line that names the columns of a table: what parts its names, the marks before and behind
-    # one, the names that are a quaternion's rather than a place's, and the entries of a matrix.
+    # A line that names the columns of a table: what separates the names, the characters around one,
+    # the names that belong to a quaternion rather than a position, and the entries of a matrix.
     "parting": r"\s*[,;|\t]\s*",
     "around a field": r"^[\s\[\](){}<>\"'#/%|]+|[\s\[\](){}<>\"'\u00b0]+$",
     "unit of a column": r"[_ ]?[\[(][^\])]*[\])]?$|[_ ](?:deg(?:rees)?|rad(?:ians)?)$",
     "of a quaternion": r"q|rot|ori|att",
-    # The names of a quaternion's parts where a place's are there as well.
+    # The names of a quaternion's components in a table that also has a position's.
     "part of a quaternion": r"(?:^|[_.])q_?[wxyz]$",
     "entry of a matrix": r"^[a-z]*_?(\d)_?(\d)$",
     "no row": r"^[\s|:=+-]*$|^\s*(?:#|//|%)",
-    # The innermost of brackets in brackets.
+    # The innermost pair of nested brackets.
     "innermost": r"[\[({]([^\[\](){}]*)[\])}]",
     "not a number": r"(?<![a-z])[-+]?(nan|inf(?:inity)?)(?![a-z])",
-    # What would have to be worked out first.
+    # Expressions that must be evaluated first.
     "arithmetic": r"\b(?:m_|np\.|math\.)?pi\b|\bsqrt\s*\(|\u221a|\u03c0",
-    # A quaternion as a sum of its parts.
+    # A quaternion as a sum of its components.
     "sum": r"\d\s*[*.]?\s*i\b[^a-z]*\d\s*[*.]?\s*j\b[^a-z]*\d\s*[*.]?\s*k\b",
     "signs of a sum": ((r"\+\s*-\s*(?=[.\d])", "-"), (r"([-+])\s+(?=[.\d])", "$1")),
     "part of a sum": rf"({NUMBER})\s*[*.]?\s*([ijk])\b",
     "scalar of a sum": rf"(?<![\w.=+-])({NUMBER})(?![\w.])",
-    # Of whole files in which numbers mean nothing without the rest: what to cut out of them.
+    # Whole files whose numbers mean nothing without the rest: tell the reader what to cut out.
     "cut out": (
         (
             r"(?:^|[\s;,|])#(?:[a-z/0]+[!?]|n/a|nv)",
@@ -79,51 +77,51 @@ SPELLING = {
             r"|(?:\b\d{1,3}:[0-5]?\d:[0-5]?\d(?:\.\d+)?[\s,;]+){2}",
             f"in {_MINUTES}",
         ),
-        # The same without signs: numbers that are too large for a matrix.
+        # The same without the signs: numbers that are too large for a matrix.
         (
             r"^(?=.*\b(?:[2-9]|\d\d+)\b)"
             r"(?:[ \t]*-?\d{1,3}[ \t]+[0-5]?\d[ \t]+[0-5]?\d(?:\.\d+)?\b[,;]?){3}[ \t]*$",
             f"not a matrix; it looks like three angles in {_MINUTES}",
         ),
     ),
-    # In this order: pattern and what takes its place; the first four before tables too.
+    # Patterns and replacements, applied in this order; the first four also before reading tables.
     "cleaning": (
         ("[\u00a0\u2000-\u200b\u202f\u3000]", " "),
         ("[\u2212\u2013\ufe63\uff0d]", "-"),
-        # Headings of PX4's tables: the scalar part is the first of four.
+        # Column headings of PX4, where the scalar part is the first of four.
         (r"^(timestamp,.*?\b)q\[0\],q\[1\],q\[2\],q\[3\]", "$1q_w,q_x,q_y,q_z"),
         (r"(?<=[a-z])\[(\d)\](?=,|$)", "_$1"),
-        # A line of COLMAP's images.txt, and the points of the image below it.
+        # A line of COLMAP's images.txt, and the image points below it.
         (
             rf"^\d+((?:[ \t]+{NUMBER}){{4}})(?:[ \t]+{NUMBER}){{3}}[ \t]+\d+[ \t]+\S+\.[a-z]\S*$"
             r"(?:\n[-+.\d \t]*$)?",
             "(w, x, y, z) $1",
         ),
-        # A frame of transforms.json has a number of that name before its matrix.
+        # A frame of transforms.json has a number called rotation before its matrix.
         (rf'"rotation"\s*:\s*{NUMBER}\s*,(?=\s*")', " "),
         (r"(\d)d([-+]\d)", "$1e$2"),
-        # The report of ROS's tf2_echo says each orientation several times.
+        # The report of ROS's tf2_echo gives each orientation several times.
         (r"(in quaternion[^\[]*\[[^\]]*\])[\s\S]*?(?=at time|(?![\s\S]))", "$1\n"),
         (r"^.*\bat time.*$", " "),
-        # Of an element of URDF the place is not the turn.
+        # The position in a URDF element is not part of the rotation.
         (r'\bxyz\s*=\s*"[^"]*"(?=[^>]*\b(?:rpy|quat|wxyz)\b)', " "),
         (r'(\b(?:rpy|quat|wxyz)\s*=\s*"[^"]*"[^>]*)\bxyz\s*=\s*"[^"]*"', "$1"),
-        # Texts in quotation marks, as names of files and of devices, and the
-        # place of an entry before its value.
+        # Strings in quotation marks, such as names of files and devices, and the index of an entry
+        # before its value.
         (r'(?<![\w"])"(?=[^"\n]*[a-z_/])(?![^"\n]*\d\.\d)[^"\n]*"(?!\s*[:=])', " "),
         (r"(?<![\w'])'[\w:/.,-]*[a-z][\w:/.,-]*'(?!\s*[:=])", " "),
         (r"\b(?:size|shape|dims?)\b\W{0,3}[\[(][\d\s,]*[\])]", " "),
         (r"(?<![.\d])\d+ ?[x\u00d7] ?\d+\b(?!\.)", " "),
         (r"\bwith indices.*$", " "),
-        # The number of a row, where it stands before it.
+        # The number of a row, before the row.
         (r"^\s*(?:row\s*)?\d{1,3}\s*[:)]\s+(?=[-+.\d\[(])", " "),
-        # The length of a list before it, the factor of MATLAB's console,
-        # Godot's columns with their place.
+        # The length before a list, the factor of MATLAB's console, and Godot's columns with their
+        # origin.
         (r"\barray\s*\(\d+\)|\(\d+\)\s*(?=\[)", " "),
         (r"^\s*1\.0e\+?0+\s*\*\s*$", " "),
         (r"\bo\s*:\s*\([^)]*\)", " "),
         (r"\b[xyz]\s*:\s*(?=\([^)]*,)", " "),
-        # Of a pose of SDF the first three numbers are a place.
+        # The first three numbers of an SDF pose are a position.
         (rf"(<pose[^>]*>)\s*(?:{NUMBER}\s+){{3}}(?=(?:{NUMBER}\s+){{2}}{NUMBER}\s*<)", "$1 rpy "),
         (r"\b([a-z_]\w*)(?:\s*[\[(]\s*\d*\s*(?:,\s*\d+\s*)?[\])])+\s*(?==(?!=)|:)", "$1 "),
         (
@@ -132,7 +130,7 @@ SPELLING = {
             r"""|fl_[xy]|camera_angle_[xy]|\w*error)["']?\s*[:=]\s*[-+]?\d[\d.]*(?:e[-+]?\d+)?(?![\w.])""",
             " ",
         ),
-        # Stamps of time, and the marks of a list.
+        # Timestamps, and the dashes of a list.
         (r"(?<![\w.])\d{8,}(?:\.\d+)?(?![\w.])", " "),
         (r"^(\s*)-\s+(?=[-+.]?\d)", "$1"),
     ),

@@ -1,6 +1,6 @@
-"""Every way in which two programs can mean different things by their numbers: one table.
+"""Every way in which two programs can mean different things by their numbers, in one table.
 
-A *reading* says what the numbers of one side mean: it is one choice from each group of its kind. A
+A *reading* says what the numbers of one side mean, as one choice from each group of its kind. A
 *relation* says how the orientation of the second side follows from that of the first:
 
 $$
@@ -10,10 +10,10 @@ $$
 $$
 
 with signed permutations $\\mathbf{P}$ (axes of the body, which are the rows) and $\\mathbf{Q}$
-(axes of the world, the columns). Each departure from what was to be expected is a *fault*. What
-both sides do alike, such as to write the scalar last, is none. A chain costs one for each fault and
-its ``rarity`` besides, which is 0 for what many programs do and above 1 for what none is known to
-do; the cheapest chain comes first. Page, command and Python read this table; nothing of it is said
+(axes of the world, the columns). Each departure from what is expected is a *fault*. What both sides
+do alike, such as writing the scalar last, is not a fault. A chain costs one for each fault, plus
+its ``rarity``, which is 0 for what many programs do and above 1 for what no known program does; the
+cheapest chain comes first. Page, command and Python share this table, so that nothing is defined
 twice.
 """
 
@@ -104,8 +104,8 @@ _UNIT = {
 #: The group of choices that says whether Euler angles are body fixed or space fixed.
 TURNS = "axes of the turns"
 
-#: What the numbers of one side may mean: for each kind its groups, for each group its choices. The
-#: first choice that a side declares, or this book's, is no fault.
+#: What the numbers of one side may mean: the groups of each kind and the choices of each group. The
+#: choice that a side declares, or else this book's, is not a fault.
 KINDS = {
     "matrix": [],
     "quaternion": [{"group": "order", "choices": _orders()}],
@@ -139,8 +139,7 @@ KINDS = {
     ],
 }
 
-#: This book's choice in each group. No sequence is anybody's by
-#: default: which one it is, is a finding.
+#: This book's choice in each group. No sequence is a default, so to determine one is a finding.
 BOOK = {
     "order": "wxyz",
     TURNS: "body fixed",
@@ -150,7 +149,7 @@ BOOK = {
     "place of the angle": "last",
 }
 
-#: Departures that are no mix-up between two programs if both make them.
+#: Departures that are not a mix-up between two programs if both make them.
 SHARED = (
     ("order", "xyzw"),
     (TURNS, "space fixed"),
@@ -158,7 +157,7 @@ SHARED = (
     ("place of the angle", "first"),
 )
 
-#: The inverse orientation, in the words of what is pasted.
+#: The inverse orientation, in terms of the numbers that were pasted.
 INVERSE = {
     "matrix": f"one is {TRANSPOSE}",
     "one matrix": "the columns of the matrix are the body's axes, as in SciPy (in this book "
@@ -172,8 +171,9 @@ INVERSE = {
 
 @functools.cache
 def axes_matrix(names):
-    """Signed permutation whose rows are the axes named: ``('y', 'x',
-    '-z')`` is NED of ENU, and ENU of NED.
+    """Return the signed permutation whose rows are the named axes.
+
+    ``('y', 'x', '-z')`` is NED in terms of ENU, and ENU in terms of NED.
     """
     return tuple(
         tuple((name[-1] == axis) * (-1 if name.startswith("-") else 1) for axis in "xyz")
@@ -185,7 +185,7 @@ def _by_axes(words):
     return {tuple(names.split()): said for names, said in words.items()}
 
 
-#: Names of axes that programs are known for: how the second names what the first calls x, y, z.
+#: Well-known namings of axes: how the second program names what the first calls x, y and z.
 BODY_AXES = _by_axes(
     {
         "x -y -z": "y and z of the body reversed (FRD and FLU; OpenCV's camera and OpenGL's)",
@@ -219,7 +219,7 @@ WORLD_AXES = _by_axes(
 
 
 def signed_axes():
-    """All 48 ways of naming three axes, as names and matrix."""
+    """Yield all 48 ways of naming three axes, as names and matrix."""
     for letters in itertools.permutations("xyz"):
         for signs in itertools.product(("", "-"), repeat=3):
             names = tuple(sign + letter for sign, letter in zip(signs, letters))
@@ -230,7 +230,7 @@ SAME_AXES = ("x", "y", "z")
 
 
 def axes_choice(names, body):
-    """What it costs, and how it is said, that one side names its axes so."""
+    """Return the cost and wording if one side names its axes so."""
     if names == SAME_AXES:
         return choice(names, "", 0.0, 0)
     known = (BODY_AXES if body else WORLD_AXES).get(names)
@@ -241,19 +241,20 @@ def axes_choice(names, body):
     if tuple(name[-1] for name in names) == SAME_AXES:
         those = " and ".join(reversed_ones) if len(reversed_ones) < 3 else "all axes"
         return choice(names, f"{those} of the {whose} reversed", 0.3)
-    # Which hand the axes make does not matter to how likely a program
-    # is: nobody does either by accident.
+    # The handedness of the axes says nothing about how likely a program is: nobody picks either by
+    # accident.
     return choice(
         names, f"the {whose}'s axes x, y, z are called {', '.join(names)} by the other program", 0.6
     )
 
 
 def relations(mirrored=False):
-    """All relations of two orientations by signed axes, the cheapest
-    description of each, cheapest first.
+    """Return all relations of two orientations by signed axes, cheapest first.
 
-    With ``mirrored`` those in which exactly one side has a left-handed triad,
-    so that the determinants differ.
+    Each is in its cheapest description.
+
+    With ``mirrored``, return those in which exactly one side has a left-handed triad, so that the
+    determinants differ.
     """
     best = {}
     all_axes = [
@@ -269,7 +270,7 @@ def relations(mirrored=False):
                 if both_reversed:
                     faults, rarity = 1, 0.1
                 else:
-                    # The rows of an inverse are the world's axes: they are said of the world.
+                    # The rows of an inverse are the world's axes, so describe them as the world's.
                     two = (of_world, others[0]) if inverse else (of_body, others[1])
                     faults = sum(one["faults"] for one in two)
                     rarity = sum(one["rarity"] for one in two)
@@ -289,7 +290,7 @@ def relations(mirrored=False):
 
 
 def left_handed(names):
-    """Whether axes so named make a triad of the other hand."""
+    """Check whether axes named so form a left-handed triad."""
     return bool(np.linalg.det(axes_matrix(names)) < 0)
 
 
@@ -301,9 +302,7 @@ def _reverses_one(names):
 
 
 def _canonical(body, world):
-    """Of a pair of axes and the same pair with all signs reversed, which do
-    the same to a matrix, always one.
-    """
+    """Return one representative of a pair of axes and its negative, which act alike."""
     if body[0].startswith("-"):
         return tuple(map(_opposite, body)), tuple(map(_opposite, world))
     return body, world
@@ -325,9 +324,7 @@ OPPOSITES = {
 
 
 def _axes_of(second, first):
-    """How one names its axes in the words of the other: ``('x',
-    '-y', '-z')`` for FRD out of FLU.
-    """
+    """Return one side's axes in terms of the other's: ``('x', '-y', '-z')`` for FRD and FLU."""
     if not (first and second):
         return SAME_AXES
     return tuple(
@@ -337,31 +334,27 @@ def _axes_of(second, first):
 
 
 def expected_relation(first, second, kinds):
-    """What two programs differ by as their manuals have it.
-
-    A relation, as inverse and the axes of both sides.
+    """Return the relation that two programs' manuals predict: inverse, and both sides' axes.
 
     Parameters
     ----------
     first, second : dict or None
-        As `orientation_workbench.programs.expected_of` gives them; without both nothing is
-        expected.
+        As `orientation_workbench.programs.expected_of` returns them; unless both are given, no
+        difference is expected.
     kinds : tuple of two str
-        What the numbers of each side are.
+        The kind of each side's numbers.
     """
     if not (first and second):
         return False, SAME_AXES, SAME_AXES
     axes = _axes_of(second["body"], first["body"]), _axes_of(second["world"], first["world"])
     turned = [kind in side["inverse"] for kind, side in zip(kinds, (first, second))]
-    # The second program's matrix is the transpose of what is meant:
-    # then world and body change places.
+    # The second program's matrix is the transpose of the intended one, so world and body change
+    # places.
     return turned[0] != turned[1], *(axes[::-1] if turned[1] else axes)
 
 
 def beyond(relation, expected):
-    """A relation that departs from the expected one as ``relation``
-    departs from none; its words are kept.
-    """
+    """Return ``relation`` applied on top of the expected one, with its own words."""
     inverse, body, world = expected
     if relation["inverse"]:
         body, world = world, body
@@ -374,7 +367,7 @@ def beyond(relation, expected):
 
 
 def _after(names, others):
-    """The axes that come of renaming twice: first as ``others`` says, then as ``names`` does."""
+    """Return the axes after renaming them twice, first by ``others`` and then by ``names``."""
     renamed = dict(zip("xyz", others))
     return tuple(
         _opposite(renamed[name[-1]]) if name.startswith("-") else renamed[name] for name in names
@@ -382,9 +375,9 @@ def _after(names, others):
 
 
 def words_of(relation, kinds, swapped=False):
-    """The faults of a relation, each as a phrase.
+    """Return the faults of a relation, each as a phrase.
 
-    ``swapped`` says that the second side's numbers are the inverse of what is meant: then the rows
+    ``swapped`` says that the second side's numbers are the inverse of what is meant. Then the rows
     of its matrix are the world's axes, and body and world change places.
     """
     kind = "one matrix" if kinds.count("matrix") == 1 else kinds[1]
@@ -401,7 +394,7 @@ def words_of(relation, kinds, swapped=False):
         axis = next(name[-1] for name in relation["body"] if name.startswith("-"))
         return [*said, f"opposite handedness: {axis} is reversed in the world and on the body"]
     body, world = (relation["body"], relation["world"])[:: -1 if swapped else 1]
-    # All signs of both reversed does the same: what is known goes first, then what is right-handed.
+    # Reversing all signs of both does the same: prefer known axes, then right-handed ones.
     body, world = min(
         ((body, world), (tuple(map(_opposite, body)), tuple(map(_opposite, world)))), key=_strange
     )
@@ -431,22 +424,21 @@ def _words_inside(what, read, built, places):
     )
 
 
-#: Which way the numbers of a side lead, in the words of the options: whether they are the inverse
-#: of what they are in this book. Of a matrix, the words say what of it the body's axes are.
+#: Whether the numbers of a side are the inverse of this book's, by the words of the options. For a
+#: matrix, the words say whether its rows or columns are the body's axes.
 WAYS = {"rows": False, "columns": True, "body in world": False, "world in body": True}
 
 
 def second_is_inverse(relation, kinds, ways):
-    """Whether the second side's numbers are the inverse of what is meant: all answers that are
-    open, as a tuple of truth values.
+    """Return all possible answers to whether the second side's numbers are inverted, as a tuple.
 
     Parameters
     ----------
     relation : dict
     kinds : tuple of two str
     ways : tuple of two (bool or None)
-        Whether each side gives the inverse, where it is known. A quaternion or angles nobody has
-        said anything of are taken for those of the body in the world.
+        Whether each side gives the inverse, if known. If nothing is known of a quaternion or of
+        angles, they are taken to be those of the body in the world.
     """
     likely = [None if kind == "matrix" else False for kind in kinds]
     one, other = (usual if way is None else way for way, usual in zip(ways, likely, strict=True))
@@ -461,17 +453,18 @@ def second_is_inverse(relation, kinds, ways):
 
 
 def readings(kind, declared, degrees_likely=False):
-    """All readings of one kind of at most three faults, each with its
-    choices, faults, rarity and words.
+    """Return all readings of one kind with at most three faults.
+
+    Each has its choices, faults, rarity and words.
 
     Parameters
     ----------
     kind : str
         A key of `KINDS`.
     declared : dict
-        Groups for which it is known what the program does; others are as in `BOOK`.
+        The known choices of the program, by group; the others are as in `BOOK`.
     degrees_likely : bool
-        A number is larger than a whole turn in radians: then degrees are to be expected.
+        Whether a number exceeds a whole turn in radians, so that degrees are expected.
     """
     base = BOOK | ({"unit": "degrees"} if degrees_likely else {}) | declared
     partial = [({}, 0, 0.0, (), ())]
@@ -506,10 +499,10 @@ def readings(kind, declared, degrees_likely=False):
 
 
 def _codes(choices, base, declared):
-    """Numbers for what may not change silently from one side to the other: unit and sequence.
+    """Return numbers for unit and sequence, which must not change silently between the sides.
 
-    The unit (0 where it is none, or a fault already) and whether it is declared; the letters of the
-    sequence, those that it has body fixed, and whether it is declared.
+    They are the unit (0 if there is none, or if it is a fault already) and whether it is declared;
+    the letters of the sequence, its letters as a body fixed one, and whether it is declared.
     """
     unit, letters = choices.get("unit"), choices.get("sequence")
     usual = unit == base.get("unit")
@@ -524,7 +517,7 @@ def _codes(choices, base, declared):
 
 
 def changed(codes, others):
-    """How many of unit and sequence differ between two readings where not both are declared."""
+    """Count how many of unit and sequence differ between two readings unless both are declared."""
     one, other = (np.moveaxis(np.asarray(each), -1, 0) for each in (codes, others))
     units = (one[0] * other[0] > 0) & (one[0] != other[0]) & (one[1] * other[1] == 0)
     letters = (one[2] * other[2] > 0) & (one[2] != other[2]) & (one[3] != other[3])
@@ -532,7 +525,7 @@ def changed(codes, others):
 
 
 def of_both(first, second):
-    """Faults, rarity and words of the readings of both sides; what both do alike is no fault."""
+    """Return the faults, rarity and words of two readings; what both do alike is no fault."""
     alike = first["shared"] & second["shared"]
     faults = first["faults"] + second["faults"] - 2 * alike.bit_count()
     faults += int(changed(first["codes"], second["codes"]))
@@ -559,13 +552,13 @@ def _choices(group):
     )
 
 
-#: Turns that a reader can make with a thing in the hand: each the words, and
-#: the turns about the body's own axes.
 #: The last line of a list of descriptions.
 NONE_OF_THESE = (
     "None of these? Then these poses hide some other fault: paste more poses, rotated about all "
     "axes."
 )
+#: Rotations that a reader can make with an object in the hand: the words for each, and the
+#: rotations about the body's own axes.
 FURTHER_POSES = (
     ("rotate it by about 40 degrees about its x axis", (("x", 40),)),
     ("rotate it by about 30 degrees about its y axis", (("y", 30),)),
@@ -591,9 +584,9 @@ _A_SHAFT = (
     "A shaft turning clockwise",
 )
 
-#: Where the book teaches what was mixed up, by the group of a reading, or the part of a relation:
-#: the section, and checked questions of which that very fault is one of the mistakes. An inverse
-#: goes by what was pasted.
+#: Where the book teaches what was mixed up, by the group of a reading or the part of a relation:
+#: the section, and checked questions that have this very fault among their mistakes. An inverse is
+#: listed by the kind of numbers pasted.
 TAUGHT = {
     "order": (_FOUR_QUESTIONS, ("exercises/convention-card.html#two-messages", "Two messages")),
     "sequence": (
@@ -670,7 +663,7 @@ TAUGHT = {
 
 
 def whole_table():
-    """The table as plain data, for the page."""
+    """Return the table as plain data, for the page."""
     return {
         "format": 1,
         "most faults": MOST_FAULTS,

@@ -1,6 +1,4 @@
-"""What a reader pastes: text in any brackets, or arrays, read as poses. Nothing
-is repaired; what was read is said.
-"""
+"""Read pasted text, in any brackets, or arrays as poses. Nothing is silently repaired."""
 
 import math
 import re
@@ -16,7 +14,7 @@ def _pattern(text):
     return re.compile(text, re.IGNORECASE | re.MULTILINE | re.ASCII)
 
 
-#: The patterns by their names, and the lists of pairs of a pattern and what belongs to it.
+#: The patterns by name, and the lists of pairs of a pattern and its meaning or replacement.
 _PATTERNS = {name: _pattern(text) for name, text in SPELLING.items() if isinstance(text, str)}
 _PAIRS = {
     name: [(_pattern(text), more) for text, more in entries]
@@ -33,7 +31,7 @@ def _replaced(text, entries):
     return text
 
 
-#: Names that numbers come with, in the order in which they are read, and what those names say.
+#: Names that label numbers, in the order in which they are tried, and what they imply.
 _NAMES = (
     (dict(zip("wxyz", range(4))), {"order": "wxyz"}),
     (
@@ -44,17 +42,14 @@ _NAMES = (
     (dict(zip("xyz", range(3))), {}),
 )
 
-#: How far the length of a quaternion, or of a row, may be from 1 besides
-#: rounding: more is another mistake.
+#: How far the length of a quaternion or row may be from 1 besides rounding; more is an error.
 SLACK = 1e-4
-#: So far the length of a quaternion may be from 1: then it is normalised, and that is said.
+#: A quaternion's length may be this far from 1; then we normalise it and say so.
 NORMALISED = 1e-3
 
 
 class Poses(NamedTuple):
-    """Numbers of one side: what kinds they may be, an array ``(poses,
-    count)``, and how far each may be off.
-    """
+    """One side's numbers: their possible kinds, an array ``(poses, count)``, and their error."""
 
     kinds: tuple[str, ...]
     numbers: np.ndarray
@@ -64,24 +59,25 @@ class Poses(NamedTuple):
 
 
 def read_poses(given, name: str, kind: str | None = None, noise: float = 0.0) -> Poses:
-    """Read one side.
+    """Read the numbers of one side.
 
     Parameters
     ----------
     given : str, or array
-        One pose a line, or matrices of three or four lines; ``name: number`` as ROS and YAML print
-        it; arrays of shape ``(3,)``, ``(4,)``, ``(9,)``, ``(3, 3)``, ``(4, 4)`` or a stack of them.
+        One pose per line, or matrices of three or four lines; ``name: number`` as ROS and YAML
+        print it; arrays of shape ``(3,)``, ``(4,)``, ``(9,)``, ``(3, 3)``, ``(4, 4)`` or a stack of
+        them.
     name : str
-        What the side is called in a message.
+        The name of the side in messages.
     kind : str, optional
-        A key of `orientation_workbench.mismatch.table.COUNTS`, where it is known.
+        A key of `orientation_workbench.mismatch.table.COUNTS`, if known.
     noise : float
-        Radians.
+        Tolerance in radians.
 
     Raises
     ------
     ValueError
-        With what was read, and what is missing.
+        If the numbers cannot be read; the message says what was read and what is missing.
     """
     if kind is not None and kind not in COUNTS:
         raise ValueError(
@@ -123,7 +119,8 @@ def _rows_of_text(text, name):
     text = _replaced(text, _PAIRS["cleaning"])
     parts = [more for pattern, more in _PAIRS["orders of parts"] if pattern.search(text)]
     bare = _PATTERNS["comment"].sub("", text)
-    if NUMBER.search(bare):  # what stands in comments alone was meant
+    # If only the comments contain numbers, the comments are what was meant.
+    if NUMBER.search(bare):
         text = bare
     text = _without_places(_decimal_points(text))
     if found := _PATTERNS["not a number"].search(text):
@@ -162,13 +159,13 @@ def _rows_of_text(text, name):
 
 
 def _unit_in(text):
-    """The unit of angles that a text names, as a declaration."""
+    """Return the unit of angles that a text names, as a declaration."""
     units = ("degrees", "radians")
     return next(({"unit": unit} for unit in units if _PATTERNS[unit].search(text)), {})
 
 
 def _fields(line):
-    """What stands between the marks of a line of a table, or between its spaces."""
+    """Return the fields of a line of a table, split at separators or else at spaces."""
     line = line.strip().strip("|")
     parted = (
         _PATTERNS["parting"].split(line.strip())
@@ -180,9 +177,7 @@ def _fields(line):
 
 
 def _columns(text):
-    """Rows, half a unit and what is said, of a table under a line that names
-    its columns; None where none does.
-    """
+    """Return rows, half a unit and declarations of a table with column names, or None without."""
     text = _replaced(text, _PAIRS["cleaning"][:4])
     lines = text.split("\n")
     for place, line in enumerate(lines):
@@ -215,9 +210,7 @@ def _columns(text):
 
 
 def _named_columns(names):
-    """Which columns hold an orientation, in the order in which they are read,
-    and what their names say of them.
-    """
+    """Return the columns that hold an orientation, in order, and what their names declare."""
     bare = [_PATTERNS["unit of a column"].sub("", name) for name in names]
     entries = [
         (found[1], found[2], column)
@@ -237,7 +230,8 @@ def _named_columns(names):
             which = [[column for column, key in enumerate(keys) if place.get(key) == each]
                      for each in range(max(place.values()) + 1)]  # fmt: skip
             if all(len(columns) == 1 for columns in which):
-                # As they stand, so that what is said of the numbers holds for the reader's own.
+                # Keep the order of the columns, so that messages about the numbers match the
+                # reader's.
                 order = sorted(range(len(which)), key=lambda each: which[each])
                 name, letters = ("order", "wxyz") if "order" in more else ("places", "123")
                 return [which[each][0] for each in order], more | {
@@ -247,7 +241,7 @@ def _named_columns(names):
 
 
 def _rows_of_lines(text):
-    # Where one number stands between semicolons, they part columns, as in a spreadsheet's file.
+    # Semicolons with one number between them separate columns, as in a spreadsheet's file.
     if ";" in text and all(len(NUMBER.findall(piece)) < 2 for piece in re.split("[\n;]", text)):
         text = text.replace(";", " ")
     pieces = re.split(r"[\n;]|\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{", text)
@@ -255,9 +249,7 @@ def _rows_of_lines(text):
 
 
 def _decimal_points(text):
-    """The text with points where it has decimal commas: one in each of
-    three numbers or more, and no point.
-    """
+    """Replace decimal commas by points if three or more numbers have one and none a point."""
     groups = re.findall(r"\d[\d,]*\d|\d", text)
     with_comma = [group for group in groups if "," in group]
     if (
@@ -270,7 +262,7 @@ def _decimal_points(text):
 
 
 def _sums(text):
-    """The text with names in the place of i, j and k, where quaternions are written as sums."""
+    """Replace i, j and k by names if quaternions are written as sums."""
     if not _PATTERNS["sum"].search(text):
         return text
     text = _replaced(text, _PAIRS["signs of a sum"])
@@ -281,9 +273,7 @@ def _sums(text):
 
 
 def _without_places(text):
-    """The text without what says where or when: of a key that stands
-    alone, also the lines set in below it.
-    """
+    """Remove positions and times; below a key without a value, also the indented lines."""
     kept, below = [], None
     for line in _VALUE_OF_NO_TURN.sub(" ", text).split("\n"):
         inset = len(line) - len(line.lstrip())
@@ -299,9 +289,7 @@ def _without_places(text):
 
 
 def _labelled(text):
-    """Numbers that come with their names, ``w: 1, x: 0, ...`` or
-    ``roll = ...``; None if they do not.
-    """
+    """Return numbers labelled as in ``w: 1, x: 0, ...`` or ``roll = ...``, or None."""
     pairs = [
         (match[1].lower(), NUMBER.match(text, match.end()))
         for match in _PATTERNS["named"].finditer(text)
@@ -332,9 +320,7 @@ def _labelled(text):
 
 
 def _half(found):
-    """Half a unit of the last digit printed: of the numbers that are not
-    small, the one with the most digits.
-    """
+    """Return half a unit of the last digit of the most precise number that is not small."""
     largest = max(abs(float(number)) for number in found)
     large = [number.lower() for number in found if abs(float(number)) >= 0.1 * largest]
     decimals = max(
@@ -345,7 +331,7 @@ def _half(found):
 
 
 def _poses(rows, name, kind, half):
-    """Rows of numbers as one array of poses, each of 3, 4 or 9 numbers."""
+    """Arrange rows of numbers as one array of poses, each of 3, 4 or 9 numbers."""
     widths = {len(row) for row in rows}
     total = sum(map(len, rows))
     width = widths.pop() if len(widths) == 1 else None
@@ -395,15 +381,13 @@ def _poses(rows, name, kind, half):
 
 
 def _nine(row):
-    """The nine entries of a matrix, as printed, out of those of one with a place."""
+    """Return the nine entries of a rotation matrix, even from one that includes a position."""
     across = {9: 3, 12: 4, 16: 4}[len(row)]
     return np.array(row).reshape(-1, across)[:3, :3].ravel().tolist()
 
 
 def _quaternion_among(rows, half):
-    """Where in each row four numbers of length 1 stand together:
-    last, first, or in one place only.
-    """
+    """Return where each row has four numbers of length 1: last, first, or at one place only."""
     array = np.array(rows, float)
     width = array.shape[1]
     if width in (9, 12, 16) and _orthogonal(np.reshape([_nine(row) for row in rows], (-1, 3))):
@@ -415,7 +399,7 @@ def _quaternion_among(rows, half):
 
 
 def _orthogonal(rows):
-    """Whether each three rows might be a matrix: each of length 1, and at right angles."""
+    """Check that every three rows are nearly a matrix: of length 1 and orthogonal."""
     array = np.array(rows, float).reshape(-1, 3, 3)
     return bool((np.abs(array @ np.swapaxes(array, 1, 2) - np.eye(3)).max(axis=(1, 2)) < 0.1).all())
 

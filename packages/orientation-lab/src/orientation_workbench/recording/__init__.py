@@ -1,8 +1,9 @@
-"""A bench for any recording of an instrument that turns.
+"""A bench for recordings of any instrument that rotates.
 
-`examine` takes a file as it came, finds out what is in it, in which units, axes and conventions,
-how wrong its instruments are, and whether a filter that uses them tells the truth about itself.
-Each answer is a `examined.Verdict` with its evidence; ``print`` shows them all.
+`examine` takes a file as it is and finds out what it contains, with which units, axes and
+conventions, how large the errors of its instruments are, and whether a filter that uses them is
+right about its own accuracy. Each answer is an `examined.Verdict` with its evidence; ``print``
+shows them all.
 """
 
 from .bench import examine

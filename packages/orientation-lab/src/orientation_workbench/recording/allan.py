@@ -1,4 +1,4 @@
-"""Noise and bias of a gyroscope that lies still: its Allan deviation, and what is read off it."""
+"""Noise and bias of a gyroscope at rest, from its Allan deviation."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ if TYPE_CHECKING:
 
 
 class StillNoise(NamedTuple):
-    """What an Allan deviation says of each axis; NaN where it does not tell.
+    """The noise of each axis according to the Allan deviation, NaN where it cannot tell.
 
     Attributes
     ----------
     angle_random_walk : array of shape ``(k,)``
-        What the part that falls with the slope -1/2 says at one second: the rates' unit times the
-        square root of a second.
+        From the part with slope -1/2, the value at one second, in the rates' unit times the square
+        root of a second.
     bias_instability : array of shape ``(k,)``
         The lowest point, in the rates' unit; NaN if the deviation still falls at its end.
     time : array of shape ``(k,)``
-        Seconds at which that is.
+        The averaging time of that lowest point, in seconds.
     """
 
     angle_random_walk: Array
@@ -30,7 +30,7 @@ class StillNoise(NamedTuple):
 
 
 def allan_deviation(rates: Array, step: float) -> tuple[Array, Array]:
-    """Allan deviation of an instrument that lies still, from all stretches of each length.
+    """Return the Allan deviation of an instrument at rest, from all stretches of each length.
 
     ``sigma(tau)**2`` is half the mean square of the difference between the means of neighbouring
     stretches (El-Sheimy, Hou and Niu 2008; in the book equation (19.1)).
@@ -44,7 +44,7 @@ def allan_deviation(rates: Array, step: float) -> tuple[Array, Array]:
     Returns
     -------
     times of shape ``(m,)`` in seconds, deviations of shape ``(m, k)`` in the unit of the rates
-        Up to a ninth of the recording: of longer stretches there are too few.
+        Up to a ninth of the recording; there are too few longer stretches.
 
     Examples
     --------
@@ -70,7 +70,7 @@ def noise_of(times: Array, deviations: Array) -> StillNoise:
     ----------
     times : array of shape ``(m,)``
     deviations : array of shape ``(m, k)``
-        As `allan_deviation` gives them.
+        As `allan_deviation` returns them.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def noise_of(times: Array, deviations: Array) -> StillNoise:
             slopes = np.gradient(np.log(values), np.log(times))
             turned = int(np.argmax(slopes > -0.25)) if (slopes > -0.25).any() else len(times)
             falling = slice(0, max(3, turned // 2))
-            # Another slope is another thing: a hand, an engine, rounding.
+            # A different slope has a different cause: a hand, an engine, rounding.
             white = abs(np.median(slopes[falling]) + 0.5) < 0.15
             walks.append(
                 np.exp(np.mean(np.log(values * np.sqrt(times))[falling])) if white else np.nan

@@ -1,6 +1,4 @@
-"""The bench: what a recording holds, one question after
-another, each answered with its evidence.
-"""
+"""The bench: one question after another about a recording, each answered with its evidence."""
 
 from __future__ import annotations
 
@@ -46,13 +44,13 @@ if TYPE_CHECKING:
     from .motion import Fit, Reading, ScaleFit, Stretch
     from .table import Array, Source
 
-#: Above this margin the best of 48 assignments is believed.
+#: With a margin above this, we trust the best of the 48 assignments.
 BELIEVED = 1.3
-#: Degrees per second, faster than which nothing rotates for a twentieth of the time.
+#: Degrees per second that nothing exceeds for a twentieth of the time.
 FASTEST = 10_000
-#: More assignments than these are not listed.
+#: The most assignments that are listed.
 FEW = 8
-#: What is fitted to a magnetometer with the rotations of the gyroscope, at the same times.
+#: What is fitted to a magnetometer using the gyroscope's rotations at the same times.
 OF_THE_FIELD = ("offset of the magnetometer", "shape of the magnetometer", "field")
 
 
@@ -64,21 +62,21 @@ def examine(
     judged: bool = True,
     progress: Callable[[float], None] | None = None,
 ) -> Examined:
-    """Put a recording on the bench.
+    """Examine a recording.
 
     Parameters
     ----------
     source : path, bytes, str or list of paths
         A table of numbers in any form that `table.read_tables` takes.
     name : str, optional
-        What to call it.
+        The name of the recording in the report.
     rate : float, optional
-        Samples per second, where the file only counts them.
+        Samples per second, if the file only counts its samples.
     columns : str
-        What the columns are, where the file does not say it: see
+        The meaning of the columns, if the file does not give it: see
         `orientation_workbench.recording.content.read_content`.
     judged : bool
-        Whether to run the filter, which takes longer than all the rest.
+        Whether to run the filter, which takes longer than everything else.
     progress : callable, optional
         Called with the share of the filter's work that is done.
 
@@ -89,7 +87,7 @@ def examine(
     Raises
     ------
     RecordingError
-        If the file cannot be read, or holds no instrument.
+        If the file cannot be read, or contains no sensor.
     """
     content = read_content(source, name, rate, columns)
     bench = _Bench(
@@ -121,7 +119,7 @@ def examine(
 
 
 class _Bench:
-    """The questions, in the order in which one needs the answers of others."""
+    """The questions, in an order in which each has the answers it needs."""
 
     def __init__(self, content: Content, name: str) -> None:
         self.content, self.name = content, name.splitlines()[0][:80] if "\n" in name else name
@@ -130,7 +128,8 @@ class _Bench:
         sensors = [content.groups[kind] for kind in SENSORS if kind in content.groups]
         self.time = sensors[0].time
         self.raw = {group.kind: _at(self.time, group.time, group.values) for group in sensors}
-        self.counts = False  # whether the gyroscope's numbers are those of its chip
+        # Whether the gyroscope's values are raw counts.
+        self.counts = False
         self.rates = self.forces = self.field = self.oriented = None
         self.warmth = np.interp(self.time, *content.temperature)
 
@@ -142,7 +141,7 @@ class _Bench:
         evidence: Mapping[str, object] | None = None,
         advice: str = "",
     ) -> None:
-        """Give a verdict. What is as it should be needs no advice."""
+        """Add a verdict; a green one needs no advice."""
         advice = "" if light == GREEN else advice.strip()
         self.verdicts.append(Verdict(about, light, words, dict(evidence or {}), advice))
 
@@ -229,19 +228,21 @@ class _Bench:
             return self.say("gyroscope", UNKNOWN, "the file has none")
         raw = self.raw["gyroscope"]
         self._saturation("gyroscope")
-        if self.content.counted:  # of which the clock has asked already
+        # The verdict on the clock has already asked for the rate.
+        if self.content.counted:
             return
         said = unit_of_rates(self.content.groups["gyroscope"].names)
-        whole = bool((raw == raw.round()).all())  # as a chip has them
+        # A chip's raw counts are whole numbers.
+        whole = bool((raw == raw.round()).all())
         grid = [unit * np.geomspace(0.45, 2.3, 8) for unit in DEGREES.values() if said or not whole]
         grid = np.concatenate(grid + [np.radians(np.geomspace(0.002, 0.2, 24))] * whole)
         # Nothing that is held or flown rotates faster.
         fast = np.percentile(np.linalg.norm(raw, axis=1), 95) * grid > np.radians(FASTEST)
         turning, fits = raw - self._quiet_mean(raw), {}
         for kind in [kind for kind in self.raw if kind != "gyroscope"]:
-            # A constant part of a field belongs to the instrument, not to the Earth.
+            # A constant part of the field belongs to the instrument, not to the Earth.
             vector = self.raw[kind] - (_centre(self.raw[kind]) if kind == "magnetometer" else 0)
-            # What hardly turns excludes no axes.
+            # A vector whose direction hardly changes excludes no axes.
             ways = vector / np.maximum(np.linalg.norm(vector, axis=1, keepdims=True), 1e-12)
             if np.ptp(np.percentile(ways, (5, 95), axis=0), axis=0).max() < 0.15:
                 continue
@@ -252,7 +253,8 @@ class _Bench:
                 fit_axes(self.time, turning, vector, finer, seconds) for seconds in (0.3, 0.6, 1.2)
             ]
             fit = max(choices, key=lambda fit: fit.margin)
-            # What pushes, as on a foot, or iron leave unexplained must not decide by a little.
+            # A poor fit, disturbed by pushes as on a foot, or by iron, must not decide by a small
+            # margin.
             if fit.margin > 2 or fit.shares.min() < 0.35:
                 fits[kind] = fit
         fit = fits.get("accelerometer")
@@ -311,18 +313,19 @@ class _Bench:
         self._axes(fits, raw * unit)
 
     def _pushed(self) -> bool:
-        """Whether pushes are nearly as large as gravity, as those on a foot that walks."""
+        """Check whether pushes are nearly as large as gravity, as on a walking foot."""
         lengths = np.linalg.norm(self.raw["accelerometer"], axis=1)
         return bool(lengths.std() > 0.6 * np.median(lengths))
 
     def _saturation(self, kind: str) -> None:
-        """Whether a sensor stays at its largest value, as when driven past its range."""
+        """Report a sensor that stays at its largest value, as if driven out of its range."""
         raw = self.raw[kind]
         for letter, column in zip("xyz", raw.T):
             for end, where in ((column.max(), "above"), (column.min(), "below")):
                 flat = np.abs(column - end) <= 1e-4 * np.abs(end)
                 lasting = int((flat[1:] & flat[:-1]).sum())
-                # Steps of a coarse instrument pile up as well, but its neighbours do no less.
+                # Values of a coarse instrument repeat as well, but then so do the neighbouring
+                # values.
                 others = np.unique(np.abs(column[~flat] - end), return_counts=True)[1]
                 if lasting >= 4 and others.size and flat.sum() > 5 * others[:3].max():
                     return self.say(
@@ -338,9 +341,7 @@ class _Bench:
         return any(verdict.about == f"range of the {kind}" for verdict in self.verdicts)
 
     def _quiet_mean(self, raw: Array) -> Array:
-        """The mean of a gyroscope where its numbers vary least, whatever their unit; zeros where
-        they vary everywhere.
-        """
+        """Return a gyroscope's mean where it varies least, or zeros if it always varies."""
         size = max(12, round(0.5 / max(np.median(np.diff(self.time)), 1e-6)))
         count = len(raw) // size
         blocks = raw[: count * size].reshape(count, size, 3)
@@ -350,9 +351,7 @@ class _Bench:
         return blocks[spread.argmin()].mean(axis=0)
 
     def _axes(self, fits: Mapping[str, Fit], rates: Array) -> None:
-        """Bring the gyroscope into the axes of the accelerometer, if they
-        differ, and find its scale and bias.
-        """
+        """Bring the gyroscope into the accelerometer's axes, if they differ."""
         fit, field, plain = fits.get("accelerometer"), fits.get("magnetometer"), np.eye(3)
         best, whose, words = None, "accelerometer", "those of the accelerometer"
         if fit is None and field is not None:
@@ -412,7 +411,7 @@ class _Bench:
         self.rates, self.still = rates, stretches(self.time, rates)
 
     def scale_and_bias(self) -> None:
-        """Scale and bias of the gyroscope, by gravity as the accelerometer is corrected to."""
+        """Find the gyroscope's scale and bias from gravity by the corrected accelerometer."""
         if self.rates is None:
             return
         lying = [stretch for stretch in self.still if stretch.still]
@@ -450,7 +449,7 @@ class _Bench:
                 "stillness", UNKNOWN, "it moves all the time", {}, "Lay it down for a few seconds."
             )
         poses = [stretch for stretch in self.still if stretch.last - stretch.first > 10]
-        # Where it lies still time and again, that tells whether the bias drifts; else gravity may.
+        # Repeated rests show whether the bias drifts; otherwise gravity may show it.
         at_rest = len(lying) > 1 and lying[-1].last - lying[0].first > len(self.time) / 2
         drift = self._drift_at_rest(lying, bias) if at_rest else np.zeros(3)
         drifting = bool(drift.any())
@@ -470,7 +469,7 @@ class _Bench:
                 "Hold it still in at least four poses, tilted well away from each other.",
             )
         else:
-            # A drift is sought between five poses or more, so fewer cannot exclude it.
+            # A drift is sought only with five or more poses, so fewer cannot exclude it.
             scale = self._scale(
                 fitted, constant, poses, drifting or (len(poses) < 5 and not at_rest)
             )
@@ -501,15 +500,17 @@ class _Bench:
             self.still = stretches(self.time, self.rates)
 
     def _resting(self, lying: Sequence[Stretch]) -> tuple[Array, Array]:
-        """Means of the gyroscope where it lies still, and their standard deviations."""
+        """Return the gyroscope's mean at rest, and the standard deviation of that mean."""
         parts = np.concatenate([self.rates[one.first : one.last] for one in lying])
         return parts.mean(axis=0), parts.std(axis=0) / np.sqrt(len(parts))
 
     def _scale(
         self, fitted: ScaleFit, constant: ScaleFit, poses: Sequence[Stretch], may_drift: bool
     ) -> float | Array:
-        """What to multiply the gyroscope by, if that is known. Of an axis with a scale of its own
-        that is so if it does not depend on whether the bias may drift.
+        """Return the factor to apply to the gyroscope, or 1 if it is not known.
+
+        We trust a separate scale for one axis only if it does not depend on whether the bias may
+        drift.
         """
         (common, uncertain), left = fitted.common, fitted.left
         carries = f"its rotations track gravity through {number_of(len(poses), 'pose')}"
@@ -529,10 +530,10 @@ class _Bench:
         both = np.array([fitted.scales, constant.scales])
         off = np.abs(both / np.median(both, axis=1, keepdims=True) - 1).min(axis=0)
         odd = np.flatnonzero(off > np.maximum(0.04, 5 * fitted.spreads))
-        # An accelerometer that errs bends the paths of gravity as well.
+        # A faulty accelerometer bends the path of gravity as well.
         means = [self.forces[pose.first : pose.last].mean(axis=0) for pose in poses]
         doubtful = np.ptp(np.linalg.norm(means, axis=1)) > 0.08 or self._cut_off("gyroscope")
-        # From few poses one scale explains nearly anything.
+        # With few poses one scale explains nearly anything.
         sure = len(odd) == 1 and len(poses) > 6 and not doubtful
         if sure and left < min(np.radians(3), 0.37 * fitted.left_alike):
             axis, factor = "xyz"[odd[0]], float(fitted.scales[odd[0]])
@@ -548,7 +549,7 @@ class _Bench:
             return np.where(np.arange(3) == odd[0], factor, 1.0)
         off = abs(common - 1)
         light = GREEN if off < max(0.02, 3 * uncertain) else _light(off, 0, 0.05)
-        # What a line leaves of a drift looks like a small scale.
+        # The remainder of a drift after fitting a line looks like a small error of scale.
         rival = may_drift and light == YELLOW
         if rival or doubtful or uncertain > 0.03 or left > np.radians(3):
             light = UNKNOWN
@@ -562,9 +563,7 @@ class _Bench:
         return common if light in (RED, YELLOW) else 1.0
 
     def _drift_at_rest(self, lying: Sequence[Stretch], bias: Array) -> Array:
-        """How far the bias is from its mean at each time, if it is another one each time the
-        instrument lies still; else zeros.
-        """
+        """Return the drift of the bias at each time if it differs between rests, or zeros."""
         biases, doubts = np.array([self._resting([stretch]) for stretch in lying]).swapaxes(0, 1)
         middles = [(stretch.first + stretch.last) // 2 for stretch in lying]
         times, warmth = self.time[middles], self.warmth[middles]
@@ -586,8 +585,10 @@ class _Bench:
         bias: Array | None,
         constant: ScaleFit,
     ) -> tuple[ScaleFit, bool]:
-        """Scale and bias, if a bias that drifts with time or temperature leaves little and a
-        constant one much, which would be taken for a scale; and whether it surely drifts.
+        """Return scale and bias, with a drift in time or temperature if that fits much better.
+
+        Without it, the drift would be taken for an error of scale. Also return whether the bias
+        surely drifts.
         """
         resting = np.concatenate([np.arange(one.first, one.last) for one in lying or poses])
         courses = [
@@ -599,7 +600,7 @@ class _Bench:
             fit_scales(self.time, self.rates, self.forces, poses, bias, course)
             for course in courses
         ]
-        # Of two that explain it nearly as well, the temperature is a cause, and time is none.
+        # If both explain it about equally well, prefer temperature, which is a cause; time is not.
         by_warmth = fits[-1].left < 1.25 * fits[0].left
         fit, course = (fits[-1], courses[-1]) if by_warmth else (fits[0], courses[0])
         if fit.left > min(np.radians(1.5), 0.8 * constant.left):
@@ -609,7 +610,7 @@ class _Bench:
         at_rest = [self._resting([one])[0] - line[(one.first + one.last) // 2] for one in lying[1:]]
         if np.abs(at_rest).max(initial=0) > 0.3 * abs(fit.drift[worst]):
             return constant, False
-        # From few poses a drift explains nearly anything.
+        # With few poses a drift explains nearly anything.
         if len(poses) < 7 or abs(fit.drift[worst]) < max(
             7 * fit.drift_spreads[worst], np.radians(1)
         ):
@@ -620,9 +621,7 @@ class _Bench:
         return fit, True
 
     def _say_drift(self, axis: int, samples: list[int], biases: Array, slope: float | None) -> None:
-        """Say what the bias about an axis is at two samples, and by how much it changes with each
-        degree if it follows the temperature.
-        """
+        """Report the bias about an axis at two samples, and its change per degree Celsius."""
         ends = zip(np.degrees(biases), self.time[samples], self.warmth[samples], strict=True)
         (bias, time, warmth), (other, later, warmer) = ends
         words = (
@@ -648,7 +647,7 @@ class _Bench:
         )
 
     def _noise(self, longest: Stretch) -> None:
-        """What the Allan deviation of the longest still stretch says."""
+        """Report what the Allan deviation of the longest still stretch shows."""
         step = float(np.median(np.diff(self.time)))
         rates = np.degrees(self.rates[longest.first : longest.last])
         self.facts["Allan deviation"] = allan_deviation(rates, step)
@@ -705,7 +704,7 @@ class _Bench:
             {"off": round(off, 4)},
             advice.get(light, ""),
         )
-        # A hand that holds it pushes it as well.
+        # A hand that holds the instrument also pushes it, so prefer the poses at rest.
         for poses in ([pose for pose in self.still if pose.still], self.still):
             means = np.array([self.forces[pose.first : pose.last].mean(axis=0) for pose in poses])
             if len(means) > 5 and np.linalg.matrix_rank(means, tol=0.5) == 3:
@@ -777,7 +776,8 @@ class _Bench:
         else:
             corrected = fit.corrected(raw) / fit.strength
             uneven_then, dips_then = self._unevenness(corrected), self._dips(corrected)
-            # Neither lengths nor dips were used to fit: a correction that mends none is none.
+            # Neither lengths nor dips were used in the fit, so a correction must improve them to
+            # count.
             useless = bool(dips and dips_then and dips_then[1] > 1.2 * dips[1] + 0.5)
             if not useless and uneven_then <= 0.8 * before + 0.01:
                 self.field, uneven, dips = corrected, uneven_then, dips_then
@@ -794,7 +794,7 @@ class _Bench:
                 )
                 advice = "Rotate it slowly through all directions, far from iron."
                 self.say(about, UNKNOWN, f"{words}, so it is not applied", {}, advice)
-        # The length is the field's alone; a dip may also vary with a wrong accelerometer.
+        # The length depends on the field alone; the dip may also vary with a faulty accelerometer.
         worst = max(uneven, dips[1] / 100 if dips else 0)
         light = YELLOW if useless and worst > 0.06 else _light(worst, 0.06, 0.12)
         words = f"its length varies by {uneven:.0%}" + (
@@ -823,7 +823,7 @@ class _Bench:
             )
 
     def _corrected_field(self, fit: FieldFit, by_lengths: bool) -> None:
-        """Axes, offset and shape, as a fit has them that makes the field steadier."""
+        """Report axes, offset and shape of a fit that makes the field steadier."""
         nearest = ASSIGNMENTS[np.argmax(np.einsum("kij,ij->k", ASSIGNMENTS, fit.axes))]
         same, axes, advice = np.eye(3), written(nearest), ""
         if "accelerometer" not in self.raw:
@@ -871,16 +871,14 @@ class _Bench:
             self.say(about, light if known else UNKNOWN, words, evidence, advice)
 
     def _unevenness(self, field: Array) -> float:
-        """By how much the length of a field varies, second by
-        second, but for its wildest moments.
-        """
+        """Return how much a field's length varies between seconds, without the extremes."""
         own = np.linalg.norm(field, axis=1)
         per_second = max(10, round(1 / np.median(np.diff(self.time))))
         smooth = [np.median(part) for part in np.array_split(own, max(4, len(own) // per_second))]
         return float(np.percentile(smooth, 97) - np.percentile(smooth, 3))
 
     def _dips(self, values: Array) -> tuple[float, float] | None:
-        """Usual dip of a field in the still poses, and by how much it varies, degrees."""
+        """Return the median dip of a field in the still poses and its variation, in degrees."""
         if self.forces is None or len(self.still) < 3 or self._cut_off("accelerometer"):
             return None
         ups, fields = (
@@ -897,7 +895,7 @@ class _Bench:
     # --- whether all look at the same moment ----------------------------------------------------
 
     def timing(self) -> None:
-        """Delays between the sensors, and samples that are missing where time was counted on."""
+        """Report delays between the sensors, and samples missing although time was counted on."""
         if self._cut_off("gyroscope"):
             self._leave_open((RED, YELLOW), "clipped rotations")
         steps = np.diff(self.time)
@@ -906,9 +904,9 @@ class _Bench:
             return
         seen = [kind for kind in self.raw if kind != "gyroscope"]
         leaps = np.all([_leaps(self.rates, self.raw[kind], step) for kind in seen], axis=0)
-        # A few leaps are gaps; many are another fault, in the unit or the axes.
-        # A clock whose steps are not all alike measures time, and does not count it on.
-        # Along wrong axes, gravity or field leaps with every rotation.
+        # A few leaps are gaps; many are another fault, in the unit or the axes. A clock with
+        # unequal steps measures time rather than counting it on. With wrong axes, gravity or field
+        # leaps in every rotation.
         along = len(seen) > 1 and not any("axes" in about for about in self._trouble())
         counted_on = np.ptp(steps) < 0.02 * step and along and not self._pushed()
         if counted_on and 0 < leaps.mean() < 0.02:
@@ -924,15 +922,16 @@ class _Bench:
                 "Record the instrument's own time with each sample: no filter can reconstruct what "
                 "was lost.",
             )
-        # What does not tell the axes tells no delay.
+        # Data that do not determine the axes do not determine a delay.
         if "axes of the gyroscope" not in self.facts or "magnetometer" not in self.raw:
             return
-        # Uncorrected, the shape of a magnetometer may look like a delay.
+        # Without correction, the shape of a magnetometer may look like a delay.
         (lag, _), kind = lag_of(self.rates, self.field, step), "magnetometer"
         if abs(lag) < max(2, round(0.03 / step)):
             return
-        # A push that comes with each turn looks like a delay of the accelerometer, which therefore
-        # only says which of the two others is late. That one is early is rare.
+        # A push that comes with each rotation looks like a delay of the accelerometer, which is
+        # therefore used only to decide which of the other two is late. It is rare for one to be
+        # early.
         if "accelerometer" in self.raw:
             _, by_lag = lag_of(self.rates, self.raw["accelerometer"], step)
             middle = len(by_lag) // 2
@@ -950,7 +949,7 @@ class _Bench:
         self._leave_open((RED, YELLOW), "wrong times")
 
     def _leave_open(self, lights: Sequence[str], cause: str) -> None:
-        """Leave open what was fitted to the magnetometer and another fault may have caused."""
+        """Retract what was fitted to the magnetometer if another fault may have caused it."""
         for place, verdict in enumerate(self.verdicts):
             if verdict.about in OF_THE_FIELD and verdict.light in lights:
                 words = f"{verdict.words}, which the {cause} may have caused"
@@ -993,7 +992,7 @@ class _Bench:
         equal = [way for way in ways if way.disagreement < best * 1.02 + 0.003]
         other = next((way for way in ways if way.disagreement > best * 1.02 + 0.003), ways[-1])
         leans = [self._lean(group.time, _matrices(candidates, way)) for way in equal]
-        # The ground has an axis up, in all programs.
+        # In all programs an axis of the ground points up.
         level = [k for k, (lean, _) in enumerate(leans) if lean < min(leans)[0] + 0.02]
         level = [k for k in level if leans[k][1].endswith("z")] or level
         reading, (lean, axis) = equal[level[0]], leans[level[0]]
@@ -1040,8 +1039,9 @@ class _Bench:
             self.say("level", light, words, {"°": round(lean, 2)}, advice)
 
     def _lean(self, time: Array, matrices: Array) -> tuple[float, str]:
-        """By how much the cosine between up and the nearest axis of the ground is below 1, and the
-        name of that axis; 0 and none without an accelerometer.
+        """Return how far the cosine between up and the ground's nearest axis is below 1.
+
+        Also return the name of that axis; without an accelerometer, return 0 and an empty name.
         """
         if self.forces is None:
             return 0.0, ""
@@ -1085,7 +1085,7 @@ class _Bench:
         squares = {
             name: float(np.mean([run.squares[name] for run in runs])) for name in runs[0].squares
         }
-        # Forwards against backwards, in tilt and heading, and the errors that each sensor shows.
+        # The errors of tilt and heading between the runs, and those of each sensor.
         pairs = ((claimed, differ), *(() if heading is None else (heading,)))
         times = [*(found / max(own, 1e-6) for own, found in pairs), *np.sqrt([*squares.values()])]
         light, advice = _light(max(times), 3, 5), ""
@@ -1116,24 +1116,25 @@ class _Bench:
 
 
 def _light(size: float, look: float, wrong: float) -> str:
-    """The light of a fault of this size."""
+    """Return the light for a fault of this size."""
     return RED if size > wrong else YELLOW if size > look else GREEN
 
 
 def _rms(values: Sequence[Sequence[float]]) -> Array:
-    """Root mean squares of columns."""
+    """Return root mean squares of columns."""
     return np.sqrt(np.mean(np.square(values), axis=0))
 
 
 def lag_of(rates: Array, vectors: Array, step: float) -> tuple[int, Array]:
-    """By how many samples vectors that stand still in the world come later than the turns.
+    """Return how many samples later than the rotations the vectors fixed in the world are.
 
     With a constant ``c`` that belongs to the instrument, ``dm/dt = -w x (m - c)``.
 
     Returns
     -------
     lag, and sums of squares of shape ``(2 * most + 1,)``
-        0 where no delay shows; what is left by each delay, from 0.4 seconds early to as much late.
+        The lag is 0 if no delay is evident. The sums are residuals for each delay, from 0.4 seconds
+        early to 0.4 seconds late.
     """
     half, most = max(1, round(0.04 / step)), round(0.4 / step)
     slopes = (vectors[2 * half :] - vectors[: -2 * half]) / (2 * half * step)
@@ -1151,7 +1152,7 @@ def lag_of(rates: Array, vectors: Array, step: float) -> tuple[int, Array]:
         squares, slope = across.T @ across, across.T @ rest.ravel()
         left[k] = np.sum(rest**2) - slope @ np.linalg.solve(squares + 1e-9 * np.eye(3), slope)
     best = int(left.argmin())
-    # Neighbours share their noise: so many values tell as much as if each stood for itself.
+    # Neighbours share their noise, so the data are worth only this many independent values.
     alone = 3 * count / (2 * half)
     clear = left[most] > (1 + 60 / alone) * left[best]
     clear &= left[best] < 0.6 * np.sum(slopes[inner] ** 2)
@@ -1159,9 +1160,7 @@ def lag_of(rates: Array, vectors: Array, step: float) -> tuple[int, Array]:
 
 
 def _leaps(rates: Array, vectors: Array, step: float) -> Array:
-    """Where vectors that stand still in the world change from one sample to the next as no turn
-    explains.
-    """
+    """Mark where vectors fixed in the world change between samples as no rotation explains."""
     mean = (vectors[1:] + vectors[:-1]) / 2
     turns = (rates[1:] + rates[:-1]) / 2
     left = np.linalg.norm(np.diff(vectors, axis=0) + step * np.cross(turns, mean), axis=1)
@@ -1170,8 +1169,9 @@ def _leaps(rates: Array, vectors: Array, step: float) -> Array:
 
 
 def _by_lengths(raw: Array) -> FieldFit | None:
-    """A magnetometer's offset and shape from the lengths alone, if they are much the better for it
-    and each four fifths of the recording give that offset too.
+    """Fit a magnetometer's offset and shape to lengths alone, if that is reliable.
+
+    The lengths must improve much, and each four fifths of the recording must give the same offset.
     """
     some = raw[:: max(1, len(raw) // 4000)]
     fit = fit_ellipsoid(some, most=0.05)
@@ -1185,14 +1185,14 @@ def _by_lengths(raw: Array) -> FieldFit | None:
 
 
 def _at(time: Array, source: Array, values: Array) -> Array:
-    """Values at other times, between samples along a straight line."""
+    """Interpolate values linearly at other times."""
     if len(source) == len(time) and np.allclose(source, time, atol=1e-9):
         return values
     return np.stack([np.interp(time, source, column) for column in values.T], axis=-1)
 
 
 def _along(values: Array) -> str:
-    """Three numbers, as one says them.
+    """Return three numbers in words.
 
     >>> _along(np.array([0.5, -2, 0]))
     'x 0.5, y -2, z 0'
@@ -1201,31 +1201,29 @@ def _along(values: Array) -> str:
 
 
 def _centre(field: Array) -> Array:
-    """A first idea of a magnetometer's offset: the middle of the
-    sphere nearest to its values, or zero.
-    """
+    """Return a first estimate of a magnetometer's offset, the centre of a sphere, or zero."""
     centre, radius = _sphere(field)
     spread = np.linalg.norm(field - centre, axis=1)
     ways = np.linalg.eigvalsh(np.cov(((field - centre) / np.maximum(spread, 1e-12)[:, None]).T))
-    # Where the values cover a small part of the sphere, its middle is anybody's guess.
+    # If the values cover only a small part of the sphere, its centre is undetermined.
     return centre if ways[0] > 0.03 and spread.std() < 0.3 * radius else np.zeros(3)
 
 
 def _sphere(points: Array) -> tuple[Array, float]:
-    """Middle and radius of the sphere nearest to points."""
+    """Return centre and radius of the sphere nearest to some points."""
     rows = np.concatenate([2 * points, np.ones((len(points), 1))], axis=1)
     solution, *_ = np.linalg.lstsq(rows, (points**2).sum(axis=1), rcond=None)
     return solution[:3], float(np.sqrt(max(solution[3] + (solution[:3] ** 2).sum(), 0.0)))
 
 
 def _matrices(candidates: Mapping[str, Array], reading: Reading) -> Array:
-    """``B_C_N``, the body taken along the gyroscope's axes."""
+    """Return ``B_C_N``, with the body along the gyroscope's axes."""
     dcms = candidates[reading.order]
     return reading.mounting.T @ (dcms.swapaxes(-1, -2) if reading.conjugate else dcms)
 
 
 def _angle_readings(group: Group) -> dict[str, Array]:
-    """Three angles as orientations: which is which, about which axes, in degrees or radians."""
+    """Return the orientations that three angles may mean, by order, axes and signs."""
     degrees = np.abs(group.values).max() > 6.5
     values = np.radians(group.values) if degrees else group.values
     order = places_by_name(group.names)
@@ -1245,8 +1243,9 @@ def _angle_readings(group: Group) -> dict[str, Array]:
 
 
 def _parts_to_judge(time: Array, rates: Array, longest: float = 60.0) -> list[tuple[int, int]]:
-    """Where to judge a filter: all of a short recording, or its
-    liveliest, calmest and middle parts.
+    """Return the ranges to judge a filter on.
+
+    A long recording is judged on its liveliest, calmest and middle parts.
     """
     if time[-1] - time[0] <= longest * 1.5:
         return [(0, len(time))]

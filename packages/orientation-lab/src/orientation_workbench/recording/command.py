@@ -1,4 +1,4 @@
-"""What ``orientation recording FILE`` does."""
+"""The command ``orientation recording FILE``."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def run(chosen: Namespace) -> int:
         )
 
     try:
-        # The filter takes a while; nobody should lose what it found to a misspelt folder.
+        # The filter takes a while, so check first that its results can be written.
         if bad := [
             str(file)
             for file in filter(None, (chosen.html, chosen.csv))

@@ -1,6 +1,4 @@
-"""What the columns of a recording are: by how they behave, with
-their headings heard as witnesses only.
-"""
+"""What a recording's columns are, by their behaviour; headings are only evidence."""
 
 from __future__ import annotations
 
@@ -15,7 +13,7 @@ from .table import RecordingError, Table, number_of, read_tables
 if TYPE_CHECKING:
     from .table import Array, Source
 
-#: Of what a heading may say, the sign that it speaks of a sensor.
+#: Patterns in a heading that indicate a sensor.
 HEADINGS = {
     "quaternion": r"quat|^q[0-3wxyz]?$|orientation|attitude|rotation.?vector|\bq\b",
     "angles": r"roll|pitch|yaw|euler|heading|azimuth|\balpha\b|\bbeta\b|\bgamma\b|\bphi\b|\btheta\b"
@@ -28,7 +26,7 @@ HEADINGS = {
     "something else": r"motor|servo|command|setpoint|debug|velocity|position|covar|stamp|seq|reset"
     r"|gps|^axis [pid]|bias|^b [aw]\b",
 }
-#: What a unit says of a sensor, where the heading says nothing else.
+#: Units that indicate a sensor if the heading does not.
 UNITS = {
     "gyroscope": r"rad ?/ ?s|rad s\^-1|deg ?/ ?s|°/s|dps",
     "accelerometer": r"m/s|m s\^-2|^m?g$",
@@ -37,11 +35,10 @@ UNITS = {
 COUNTS = r"counter|packet|index|sample(?!.*time)|frame|count$|^id$|iteration|tick"
 RATE = r"(?:rate|frequency)[\W_]*([\d.]+)\s*hz"
 TIME = r"time|stamp|second|^t$|^sec|^ms$|^us$|clock|counter|packet|sample|index|frame"
-#: What a bench can use.
+#: The kinds of columns that the bench can use.
 PLAYED = ("accelerometer", "magnetometer", "gyroscope", "quaternion", "angles")
 UNITS_OF_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
-#: Lengths of what points one way only, in the units that are in use:
-#: standard gravity, and the Earth's field.
+#: The magnitudes of gravity and of the Earth's field, which keep their direction, in common units.
 GRAVITY = {"g": 1.0, "m/s²": 9.80665, "mg": 1000.0, "cm/s²": 980.665}
 FIELD = {
     "µT": (20, 70),
@@ -51,7 +48,7 @@ FIELD = {
     "multiples of its length": (0.7, 1.5),
 }
 DEGREES = {"rad/s": 1.0, "°/s": np.pi / 180, "mrad/s": 1e-3, "m°/s": np.pi / 180e3}
-#: The instruments, in the order in which one gives the others its clock.
+#: The sensors; the first one present gives the others its clock.
 SENSORS = ("gyroscope", "accelerometer", "magnetometer")
 
 
@@ -61,9 +58,9 @@ class Group(NamedTuple):
     Attributes
     ----------
     kind : str
-        What it is taken for.
+        What the columns are taken to be.
     called : str
-        What the headings say that it is, or an empty string.
+        What the headings call them, or an empty string.
     names : list of str
         The headings.
     time : array of shape ``(n,)``
@@ -78,21 +75,22 @@ class Group(NamedTuple):
 
 
 class Content(NamedTuple):
-    """What a recording holds.
+    """What a recording contains.
 
     Attributes
     ----------
     groups : dict
         A `Group` by its kind: gyroscope, accelerometer, magnetometer, quaternion, angles.
     clock : str
-        The heading of the time that is used, and its unit; or that there is none.
+        The heading and unit of the time used, or a note that there is none.
     counted : bool
-        Whether time is only counted: the rate is not known.
+        Whether time only counts samples, so that the rate is unknown.
     remarks : list of str
     unused : list of str
-        Headings of columns that nothing was made of.
+        Headings of unused columns.
     temperature : pair of arrays of shape ``(n,)``
-        Times and values of the first column that is called so; one zero each if there is none.
+        Times and values of the first column called temperature; a single zero each if there is
+        none.
     """
 
     groups: dict[str, Group]
@@ -114,9 +112,9 @@ def read_content(
         As `table.read_tables` takes it. All its tables share one clock.
     name : str, optional
     rate : float, optional
-        Samples per second, where the file only counts them.
+        Samples per second, if the file only counts its samples.
     columns : str
-        What the columns are, where nothing in the file says it, such as
+        The meaning of the columns, if the file does not give it, such as
         ``'time=1 gyroscope=2-4:deg/s accelerometer=5-7:g'``; columns count from 1.
 
     Returns
@@ -126,7 +124,7 @@ def read_content(
     Raises
     ------
     RecordingError
-        If the file cannot be read, or holds no instrument.
+        If the file cannot be read, or contains no sensor.
     """
     if rate is not None and not 0 < rate < np.inf:
         raise RecordingError(
@@ -177,7 +175,8 @@ def read_content(
     if counted and said and not rate:
         rate = float(said[1])
         clock += f", at {rate:g} per second according to the lines above the numbers"
-    if counted:  # the samples of the first instrument are the clock, one by one
+    # The samples of the first sensor serve as the clock.
+    if counted:
         ticks = first.time
         kinds = {
             kind: group._replace(
@@ -192,20 +191,20 @@ def read_content(
     return Content(kinds, clock, counted and not rate, remarks, unused, temperature)
 
 
-#: One entry of what a reader says the columns are.
+#: An entry of the reader's description of the columns.
 _TOLD = re.compile(r"(\w+)=(\d+)(?:-(\d+))?(?::(\S+))?")
-#: The units that an entry can give; elsewhere a unit makes no difference.
+#: The units that an entry may give; for other columns a unit makes no difference.
 _UNITS_TOLD = {
     "time": r"[munµμ]?s",
     "gyroscope": r"m?(?:(?:rad|deg|°)/s|dps)",
     "accelerometer": r"m?g|c?m/s(?:²|\^?2)",
 }
-#: What an entry can name.
+#: The kinds that an entry may name.
 _NAMED = ("time", *SENSORS, "gravity", "linear", "quaternion", "angles")
 
 
 def _told(table: Table, columns: str) -> Table:
-    """A table under the headings that the reader has said."""
+    """Return a table with the headings that the reader gave."""
     names = list(table.columns)
     for entry in columns.split():
         told = _TOLD.fullmatch(entry)
@@ -241,7 +240,7 @@ def _told(table: Table, columns: str) -> Table:
 
 
 def _question(tables: Sequence[Table], chosen: Mapping[str, Group]) -> str:
-    """What to ask of a file that names no instrument, with its first rows."""
+    """Ask about a file that names no sensor, showing its first rows."""
     table = tables[0]
     rows = [" ".join(f"{value:.6g}" for value in row[:16]) for row in table.values[:3]]
     shown = "\n".join(f"    {row}" for row in [" ".join(table.columns[:16]), *rows])
@@ -259,17 +258,15 @@ def _question(tables: Sequence[Table], chosen: Mapping[str, Group]) -> str:
 
 
 def _unit(heading: str) -> str:
-    """What stands in brackets in a heading, or behind its last blank."""
+    """Return the unit in a heading's brackets, or after its last underscore."""
     brackets = re.search(r"[(\[]([^)\]]*)[)\]]", heading)
     return (brackets[1] if brackets else heading.rpartition("_")[2]).strip().lower()
 
 
 def _time(table: Table) -> tuple[int | None, Array, str, bool]:
-    """The column of the time, the time in seconds, in what words,
-    and whether it is only counted.
-    """
+    """Return the column of time, the seconds, a description, and whether it only counts."""
     candidates: list[tuple[float, int]] = []
-    # Whole seconds, and beside them what is left of each.
+    # Whole seconds with the fraction of each in another column.
     for k, column in enumerate(table.columns):
         rest = [
             c
@@ -324,9 +321,7 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
 
 
 def _by_rate(table: Table, step: float) -> float | None:
-    """The unit of a clock, some power of ten of a second, that gives the
-    rate in the lines above the numbers.
-    """
+    """Return the power of ten of a second that gives a clock the rate stated above the numbers."""
     said = re.search(RATE, table.head, re.IGNORECASE)
     if not said or not float(said[1]):
         return None
@@ -335,8 +330,8 @@ def _by_rate(table: Table, step: float) -> float | None:
 
 
 def _parts(heading: str) -> tuple[str, str]:
-    """A heading without its unit, parted into what it is about and the letter of its axis."""
-    # Before the headings of a robot's log, and behind those of a drone's and of a phone's.
+    """Split a heading, without its unit, into its subject and the letter of its axis."""
+    # The prefix of a robot's log, and the suffixes of a drone's and a phone's.
     heading = re.sub(r"^field\.|(?<=[WXYZ])(?::[A-Z]|Mps2|RadPerSec|MicroT)$", "", heading)
     text = re.sub(r"[(\[](?![0-3wxyzWXYZ][)\]]).*?[)\]]", "", heading).strip().lower()
     text = re.sub(
@@ -364,17 +359,17 @@ def _called(text: str, patterns: Mapping[str, str] = HEADINGS) -> str:
 
 
 def _named(stem: str, table: Table, column: int) -> str:
-    """What the heading of an axis, its unit or the name of its table say that it is."""
+    """Return what the heading of an axis, its unit or the name of its table indicate."""
     unit, name = _called(_unit(table.columns[column]), UNITS), _called(table.name.lower())
-    # Gauss or gravity: the name of the table knows better.
+    # For gauss or gravity, the name of the table is more reliable.
     if _unit(table.columns[column]) in ("g", "mg"):
         unit, name = name, unit
-    # An alpha with axes is an acceleration: the angle has none.
+    # An alpha with axes is an acceleration, since the angle has none.
     return ("accelerometer" if stem == "alpha" else _called(stem)) or unit or name
 
 
 def _groups(table: Table, time_column: int | None, time: Array) -> tuple[list[Group], list[str]]:
-    """Columns that belong together, and the headings of those that are left."""
+    """Return the columns that belong together, and the headings of the others."""
     groups: list[Group] = []
     taken = {time_column}
     parts = [_parts(column) for column in table.columns]
@@ -424,7 +419,8 @@ def _groups(table: Table, time_column: int | None, time: Array) -> tuple[list[Gr
         if len(found) == 4 and _is_unit(table.values[:, columns]):
             order = "".join(axis for axis, _ in found)
             if set(order) == set("wxyz") and order not in ("wxyz", "xyzw"):
-                columns = [axes[axis] for axis in "wxyz"]  # some write z before y before x
+                # Some write z before y before x.
+                columns = [axes[axis] for axis in "wxyz"]
             add("quaternion", columns, "quaternion")
         elif {"x", "y", "z"} <= set(axes) and len(found) in (3, 4):
             add("vector", [axes[axis] for axis in "xyz"], called)
@@ -438,9 +434,7 @@ def _groups(table: Table, time_column: int | None, time: Array) -> tuple[list[Gr
 
 
 def places_by_name(names: Iterable[str]) -> tuple[int, ...] | None:
-    """Places of yaw, pitch and roll, or of alpha, beta and gamma, by their
-    headings; None where there is doubt.
-    """
+    """Return the places of yaw, pitch and roll, or alpha, beta and gamma, or None if unclear."""
     text = [name.lower() for name in names]
     for words in (
         ("yaw", "pitch", "roll"),
@@ -449,7 +443,7 @@ def places_by_name(names: Iterable[str]) -> tuple[int, ...] | None:
         ("alpha", "beta", "gamma"),
         ("psi", "theta", "phi"),
     ):
-        # Beside an angle there may stand the one that was wanted: the shorter name is the angle's.
+        # The commanded angle may be beside the measured one, which has the shorter name.
         having = [[k for k, one in enumerate(text) if word in one] for word in words]
         places = tuple(min(places, key=lambda k: len(text[k])) for places in having if places)
         if len(set(places)) == 3:
@@ -458,15 +452,13 @@ def places_by_name(names: Iterable[str]) -> tuple[int, ...] | None:
 
 
 def _is_unit(values: Array) -> bool:
-    """Whether four columns have length 1 in nearly all rows, as a quaternion's have."""
+    """Check that four columns have length 1 in nearly all rows, as a quaternion's have."""
     lengths = np.linalg.norm(values[np.isfinite(values).all(axis=1)], axis=1)
     return len(lengths) > 8 and float(np.mean(np.abs(lengths - 1) < 0.025)) > 0.98
 
 
 def _with_gravity(chosen: dict[str, Group], groups: Sequence[Group]) -> list[str]:
-    """Where acceleration and gravity stand in columns of their own, their
-    sum is what an accelerometer feels.
-    """
+    """Combine separate columns of acceleration and gravity into an accelerometer's measurement."""
     felt = chosen.get("accelerometer")
     apart = [
         group for group in groups if group.called == "gravity" and points_one_way(group.values)
@@ -488,21 +480,21 @@ def _with_gravity(chosen: dict[str, Group], groups: Sequence[Group]) -> list[str
 
 
 def points_one_way(values: Array) -> bool:
-    """Whether vectors have nearly one length, as gravity and the Earth's field
-    have, and a gyroscope's have not.
-    """
+    """Check for a nearly constant length, which gravity and the Earth's field have."""
     low, middle, high = np.percentile(np.linalg.norm(values, axis=1), (10, 50, 95))
     return bool(middle > 0 and low / middle > 0.6 and high / middle < 2.2)
 
 
 def _roles(groups: Sequence[Group]) -> dict[str, Group]:
-    """The first group of each name that moves. Where what is called a gyroscope points one way
-    all the time and what is called an accelerometer does not, the two have changed places.
+    """Return the first group of each kind that varies.
+
+    If the supposed gyroscope has a nearly constant length and the supposed accelerometer has not,
+    the two are swapped.
     """
     chosen: dict[str, Group] = {}
     for group in groups:
         kind = group.called if group.kind == "vector" else group.kind
-        # What some call linear holds gravity nevertheless: its length tells.
+        # So-called linear acceleration may include gravity, which its length reveals.
         if kind == "linear acceleration" and points_one_way(group.values):
             kind = "accelerometer"
         if kind in PLAYED and np.ptp(group.values, axis=0).any():
@@ -514,9 +506,7 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
 
 
 def unit_of_gravity(values: Array) -> tuple[str, float, float]:
-    """The unit in which vectors have gravity's length, how many of it
-    make one, and by how much it is off.
-    """
+    """Return the unit that fits gravity's length, its number per g, and the relative error."""
     middle = float(np.median(np.linalg.norm(values, axis=1)))
     unit = min(GRAVITY, key=lambda one: abs(np.log(middle / GRAVITY[one])))
     if abs(np.log(middle / GRAVITY[unit])) < 0.2:
@@ -525,20 +515,20 @@ def unit_of_gravity(values: Array) -> tuple[str, float, float]:
 
 
 def unit_of_field(length: float) -> str:
-    """The unit in which vectors of this length have that of the Earth's field."""
+    """Return the unit in which vectors of this length fit the Earth's field."""
     units = [unit for unit, (low, high) in FIELD.items() if low <= length <= high]
     return units[0] if units else "an unknown unit"
 
 
 def unit_of_rates(names: Sequence[str]) -> str:
-    """The unit of angular velocity that headings name; empty where they name none."""
+    """Return the unit of angular velocity that headings name, or an empty string."""
     text = " ".join(names).lower()
     marks = {"mrad/s": "mrad", "rad/s": "rad", "m°/s": "mdps|mdeg", "°/s": "deg|°|dps"}
     return next((unit for unit, pattern in marks.items() if re.search(pattern, text)), "")
 
 
 def unit_in_brackets(heading: str) -> str:
-    """The unit of acceleration in a heading's brackets, if it is one that is in use."""
+    """Return the unit of acceleration in a heading's brackets, if it is a known one."""
     text = heading.lower().replace("^2", "²").replace("s2", "s²")
     unit = re.search(r"[(\[]\s*(m/s²|m?g|cm/s²)\s*[)\]]", text)
     return unit[1] if unit else ""

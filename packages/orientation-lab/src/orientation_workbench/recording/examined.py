@@ -1,4 +1,4 @@
-"""What the bench has found, and the same as a text."""
+"""The bench's findings, and their text form."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ if TYPE_CHECKING:
     from .motion import Reading, Stretch
     from .table import Array
 
-#: Meaning of each status light.
+#: The status lights.
 GREEN, YELLOW, RED, UNKNOWN = "as it should be", "look", "wrong", "cannot tell"
-WIDTH = 76  # of a line of the text
+# The width of a line of the text report.
+WIDTH = 76
 LIGHTS = {"as it should be": "ok  ", "look": "LOOK", "wrong": "RED ", "cannot tell": "?   "}
-#: What was found, as numbers: what corrects a recording of the same instrument.
+#: The findings as numbers, which correct a recording of the same instrument.
 Facts = TypedDict(
     "Facts",
     {
@@ -50,9 +51,9 @@ class Verdict(NamedTuple):
     words : str
         The answer.
     evidence : dict
-        Numbers that it rests on, by what they are.
+        The numbers behind the answer, by name.
     advice : str
-        What to do, or what would let it tell.
+        What to do, or what would make an answer possible.
     """
 
     about: str
@@ -63,7 +64,7 @@ class Verdict(NamedTuple):
 
 
 class Examined(NamedTuple):
-    """A recording, examined.
+    """An examined recording.
 
     Attributes
     ----------
@@ -71,8 +72,8 @@ class Examined(NamedTuple):
     verdicts : list of Verdict
     time : array of shape ``(n,)``
     rates, forces, field : arrays of shape ``(n, 3)`` or None
-        Corrected: along the axes of the accelerometer, in radians per second, multiples of gravity,
-        and multiples of the field's own length.
+        Corrected values along the axes of the accelerometer, in radians per second, multiples of
+        gravity, and multiples of the field's own length.
     orientation : tuple or None
         Times, and the file's orientations as ``B_C_N``.
     judgements : list of Judgement
@@ -92,7 +93,7 @@ class Examined(NamedTuple):
     facts: Facts
 
     def light(self, about: str) -> str:
-        """The light of one verdict, or ``cannot tell``."""
+        """Return the light of one verdict, or ``cannot tell``."""
         return next((verdict.light for verdict in self.verdicts if verdict.about == about), UNKNOWN)
 
     def __str__(self) -> str:
@@ -100,7 +101,7 @@ class Examined(NamedTuple):
 
 
 def as_text(examined: Examined) -> str:
-    """The report as plain text: a sentence for each verdict, and what to do."""
+    """Return the report as plain text: a sentence for each verdict, and what to do."""
     rows = [
         row
         for verdict in examined.verdicts
@@ -118,6 +119,6 @@ def as_text(examined: Examined) -> str:
 
 
 def as_data(examined: Examined) -> dict[str, object]:
-    """The report as plain data: what ``--json`` prints, in format 1."""
+    """Return the report as plain data in format 1, which ``--json`` prints."""
     verdicts = [verdict._asdict() for verdict in examined.verdicts]
     return {"format": 1, "recording": examined.name, "verdicts": verdicts}

@@ -1,6 +1,4 @@
-"""A magnetometer's offset, shape and axes: the field keeps its length, and stays while the
-gyroscope says it turns.
-"""
+"""A magnetometer's offset, shape and axes, from the field's constant length and direction."""
 
 from __future__ import annotations
 
@@ -15,24 +13,25 @@ if TYPE_CHECKING:
 
 
 class FieldFit(NamedTuple):
-    """What makes a magnetometer see one field, however it is turned:
-    ``shape @ (measured - offset)``.
+    """A correction that makes a magnetometer see one constant field.
+
+    The corrected values are ``shape @ (measured - offset)``.
 
     Attributes
     ----------
     shape : array of shape ``(3, 3)``
-        Of determinant 1; the axes of the gyroscope from those of the magnetometer, and what soft
-        iron did.
+        A matrix of determinant 1 that combines the rotation from the magnetometer's to the
+        gyroscope's axes with the effect of soft iron.
     offset : array of shape ``(3,)``
-        Of hard iron, in the magnetometer's unit.
+        The effect of hard iron, in the magnetometer's unit.
     strength : float
-        Length of the field that is left, in that unit.
+        Length of the corrected field, in that unit.
     uncertainty : float
-        Standard deviation of a direction that is computed with it, radians.
+        Standard deviation of a direction computed with this correction, in radians.
     axes : array of shape ``(3, 3)``
-        The turn nearest to ``shape``.
+        The rotation nearest to ``shape``.
     stretch : float
-        Longest over shortest axis of the rest.
+        Longest over shortest axis of the remaining factor of ``shape``.
     """
 
     shape: Array
@@ -43,32 +42,33 @@ class FieldFit(NamedTuple):
     stretch: float
 
     def corrected(self, values: Array) -> Array:
-        """Values as they would be without the iron that moves along."""
+        """Return values without the effect of the iron that moves with the instrument."""
         return (values - self.offset) @ self.shape.T
 
 
 def spread_of_lengths(values: Array) -> float:
-    """Standard deviation of the lengths of vectors, as a share of their mean."""
+    """Return the standard deviation of the lengths of vectors, relative to their mean."""
     lengths = np.linalg.norm(values, axis=1)
     return lengths.std() / lengths.mean()
 
 
 def fit_ellipsoid(values: Array, most: float = 0.1) -> FieldFit | None:
-    """Fit offset and shape of a magnetometer to the lengths alone, without a gyroscope.
+    """Fit a magnetometer's offset and shape to the lengths alone, without a gyroscope.
 
-    First the ten coefficients of the quadric nearest to the values (in the book equation (18.11)),
-    then the lengths themselves by least squares.
+    Fit the ten coefficients of the nearest quadric first (in the book equation (18.11)), then the
+    lengths themselves by least squares.
 
     Parameters
     ----------
     values : array of shape ``(n, 3)``
     most : float
-        Radians: a fit less certain than that is refused.
+        The largest accepted uncertainty, in radians.
 
     Returns
     -------
     FieldFit or None
-        Its shape is symmetric, for lengths do not tell a turn; None where the poses do not suffice.
+        The shape is symmetric, since lengths do not determine a rotation. None if the poses do not
+        suffice.
 
     Examples
     --------
@@ -100,7 +100,8 @@ def fit_ellipsoid(values: Array, most: float = 0.1) -> FieldFit | None:
     sizes, axes = np.linalg.eigh(quadric)
     centre = -np.linalg.pinv(quadric) @ linear
     sizes = sizes / (centre @ quadric @ centre - v[9])
-    if sizes.min() <= 1e-6 * sizes.max():  # a hyperboloid fits better: the poses cover too little
+    # A hyperboloid fits better, so the poses cover too little.
+    if sizes.min() <= 1e-6 * sizes.max():
         return None
     shape = axes * np.sqrt(sizes) @ axes.T
     places = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
@@ -118,7 +119,7 @@ def fit_ellipsoid(values: Array, most: float = 0.1) -> FieldFit | None:
         centre = centre + change[6:]
         if np.abs(change).max() < 1e-10:
             break
-    # What neighbours say together counts once.
+    # Correlated neighbours count only once.
     noise = (1 - lengths).std() * lasting(1 - lengths, 0.99)
     noise *= np.sqrt(len(values) / (len(values) - 9))
     covariance = noise**2 * np.linalg.inv(slopes.T @ slopes)
@@ -126,7 +127,8 @@ def fit_ellipsoid(values: Array, most: float = 0.1) -> FieldFit | None:
     in_offset = np.linalg.eigvalsh(shape @ covariance[6:, 6:] @ shape)[-1]
     uncertainty = float(np.sqrt(in_shape + in_offset))
     stretches = np.linalg.eigvalsh(shape)
-    planar = np.linalg.eigvalsh(np.cov(ways.T))[0] < 0.005  # noise bends what lies in a plane
+    # Noise bends values that lie in a plane.
+    planar = np.linalg.eigvalsh(np.cov(ways.T))[0] < 0.005
     if planar or not uncertainty < most or not 0 < stretches[-1] <= 3 * stretches[0]:
         return None
     size = float(np.linalg.det(shape) ** (1 / 3))
@@ -141,24 +143,24 @@ def fit_ellipsoid(values: Array, most: float = 0.1) -> FieldFit | None:
 
 
 def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) -> FieldFit | None:
-    """Fit offset and shape of a magnetometer.
+    """Fit a magnetometer's offset and shape, using a gyroscope.
 
     Parameters
     ----------
     time : array of shape ``(n,)``
     rates : array of shape ``(n, 3)``
-        Of the gyroscope, radians per second, its bias removed.
+        The gyroscope's angular velocities in radians per second, without its bias.
     field : array of shape ``(n, 3)``
 
     Returns
     -------
     FieldFit or None
-        None where the turns do not decide, or nothing is better for the correction.
+        None if the rotations do not suffice, or the correction improves nothing.
 
     Notes
     -----
     Carried back by the gyroscope to the beginning of a run of some seconds, the corrected field is
-    one vector: ``D.T @ (A m - c) = f``. That is linear in ``A``, ``c`` and the field ``f`` of each
+    one vector: ``D.T @ (A m - c) = f``. This is linear in ``A``, ``c`` and the field ``f`` of each
     run.
     """
     parts, size = pieces(time, rates, longest=80.0, seconds=seconds)
@@ -180,13 +182,14 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
     c = -np.concatenate(plain).reshape(-1, 3)
     runs = np.array(runs)
     both = np.concatenate([a, c], axis=1).reshape(len(runs), 3, 12)
-    for run in np.unique(runs):  # the field of a run is what is left of its mean
+    # Removing the mean of each run eliminates its unknown field.
+    for run in np.unique(runs):
         both[runs == run] -= both[runs == run].mean(axis=0)
     both = both.reshape(-1, 12)
     weights = np.ones(len(both))
     for _ in range(4):
         weighted = both * weights[:, None]
-        # Of all A of one size, the one that leaves least; c follows from it.
+        # Minimise over all A of one size; c follows from A.
         onto, *_ = np.linalg.lstsq(weighted[:, 9:], weighted[:, :9], rcond=None)
         rest = weighted[:, :9] - weighted[:, 9:] @ onto
         _, sizes, ways = np.linalg.svd(rest, full_matrices=False)
@@ -196,11 +199,12 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
     shape = solution.reshape(3, 3)
     noise = sizes[-1] / np.sqrt(max(1, len(rest) - 12))
     size_of_shape = abs(np.linalg.det(shape)) ** (1 / 3)
-    if size_of_shape < 0.05 or sizes[-1] > 0.4 * sizes[-2]:  # another shape fits nearly as well
+    # Another shape fits nearly as well.
+    if size_of_shape < 0.05 or sizes[-1] > 0.4 * sizes[-2]:
         return None
     shape = shape / size_of_shape
     offset = -onto @ solution / size_of_shape
-    # A field and its opposite fit alike: taken is what needs no mirror.
+    # A field and its opposite fit equally well; choose the one without a reflection.
     if np.linalg.det(shape) < 0:
         shape, offset = -shape, -offset
     left_side, stretches, right_side = np.linalg.svd(shape)
@@ -210,8 +214,7 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
     carried = np.einsum("bijk,jk->bi", means, shape) - np.concatenate(plain) @ offset
     fields = [carried[runs == run].mean(axis=0) for run in np.unique(runs)]
     strength = float(np.median(np.linalg.norm(fields, axis=1)) * scale)
-    # The way in which A is known least, and the noise of a block,
-    # give how far a direction can be off.
+    # The least certain direction of A and the noise of a block bound the error of a direction.
     spread_a = noise / max(sizes[-2], 1e-12) * np.sqrt(3)
     spread_c = noise / max(np.linalg.svd(both[:, 9:], compute_uv=False)[-1], 1e-12)
     uncertainty = (
@@ -219,26 +222,26 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
     )
     stretch = float(stretches[0] / stretches[-1])
     fit = FieldFit(shape, centre, strength, float(uncertainty), axes, stretch)
-    # A correction that makes things worse is none.
+    # A correction that makes things worse is useless.
     worse = spread_of_lengths(fit.corrected(field)) > spread_of_lengths(field) + 0.02
     return None if worse or stretch > 3 else fit
 
 
 def uneven_lengths(means: Array) -> tuple[str, Array, Array, float]:
-    """Which fault of an accelerometer explains best that gravity has several lengths in still
-    poses: an offset, or a scale of its own, of one axis or of all.
+    """Find the accelerometer fault that best explains varying lengths of gravity at rest.
 
-    Each is tried on poses that were not used: left out, one after another.
+    The fault is an offset or a scale, of one axis or of all. Each is tested on poses left out of
+    the fit, one after another.
 
     Parameters
     ----------
     means : array of shape ``(m, 3)``
-        In multiples of gravity.
+        Mean readings in the still poses, in multiples of gravity.
 
     Returns
     -------
     name, offset of shape ``(3,)``, scales of shape ``(3,)``, and the deviation of lengths then
-        True is ``(measured - offset) / scales``.
+        The corrected values are ``(measured - offset) / scales``.
     """
     axes = np.eye(3, dtype=bool)
     none, every = np.zeros(3, dtype=bool), np.ones(3, dtype=bool)
@@ -269,7 +272,7 @@ def uneven_lengths(means: Array) -> tuple[str, Array, Array, float]:
             offset, scale = fitted(np.delete(means, k, axis=0), offsets, scales)
             lengths.append(np.linalg.norm((mean - offset) / scale))
         left = float(np.std(lengths))
-        # What needs more numbers comes after what explains nearly all.
+        # Prefer a fault with few parameters if it explains nearly everything.
         if left < best[3] and (offsets.sum() + scales.sum() == 1 or best[3] > 0.008):
             best = name, *fitted(means, offsets, scales), left
     return best

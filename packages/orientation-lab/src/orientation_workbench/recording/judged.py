@@ -1,6 +1,4 @@
-"""A filter judged without knowing the truth: by what it expected
-to see, and by itself run backwards.
-"""
+"""Judging a filter without the truth, by its innovations and by running it backwards."""
 
 from __future__ import annotations
 
@@ -21,8 +19,7 @@ UP = np.array([0.0, 0, 1])
 
 
 def chi_square_bounds(freedom: int, share: float = 0.95) -> Array:
-    """Bounds between which the mean of ``freedom`` squares of standard normal
-    numbers lies (Wilson and Hilferty).
+    """Return Wilson-Hilferty bounds for the mean of ``freedom`` squared standard normals.
 
     >>> chi_square_bounds(100).round(3).tolist()
     [0.742, 1.296]
@@ -33,7 +30,7 @@ def chi_square_bounds(freedom: int, share: float = 0.95) -> Array:
 
 
 class Noise(NamedTuple):
-    """What a filter is told of its instruments.
+    """The noise a filter assumes for its instruments.
 
     Attributes
     ----------
@@ -42,7 +39,7 @@ class Noise(NamedTuple):
     bias : float
         Random walk of the bias, radians per second per square root of a second.
     force, field : float
-        Standard deviations of the two directions at best, radians.
+        Smallest standard deviations of the two directions, in radians.
     """
 
     gyroscope: float
@@ -51,29 +48,30 @@ class Noise(NamedTuple):
     field: float
 
 
-#: What is assumed of instruments that were never still: cheap ones.
+#: The noise we assume for instruments that were never still, which is that of cheap ones.
 ASSUMED = Noise(gyroscope=2e-4, bias=1e-4, force=0.01, field=0.02)
 
 
 class Judgement(NamedTuple):
-    """What a filter says of itself, and what the data say of it.
+    """What a filter claims about itself, and what the data show.
 
     Attributes
     ----------
     claimed : float
-        Standard deviation of tilt that it claims, degrees.
+        The standard deviation of tilt that it claims, in degrees.
     found : float
-        Of the tilt, by the filter run forwards and backwards, degrees.
+        The standard deviation of tilt found by running the filter forwards and backwards, in
+        degrees.
     heading : tuple of two float or None
-        The same two of the heading; None without a magnetometer: nothing else sees it.
+        The same two for the heading; None without a magnetometer, which alone observes it.
     squares : dict
-        Mean normalised squares of innovations, by sensor, as multiples of what they should be.
+        Mean normalised squared innovations by sensor, relative to their expected values.
     times : array of shape ``(n,)``
         Seconds.
     dcms : array of shape ``(n, 3, 3)``
-        ``B_C_N`` of the filter run forwards.
+        ``B_C_N`` from the forward run.
     apart, claims : arrays of shape ``(n,)``
-        By how much the two differ in tilt at each time, and by how much they should, degrees.
+        The difference in tilt between the two runs at each time, and its expected size, in degrees.
     """
 
     claimed: float
@@ -97,8 +95,9 @@ def _start(forces: Array, field: Array | None) -> Array:
 def in_blocks(
     time: Array, rates: Array, vectors: Sequence[Array], seconds: float = 0.05
 ) -> tuple[Array, Array, Sequence[Array]]:
-    """Fewer and longer steps: each of the same turn, its vectors carried to its
-    end by the gyroscope and averaged.
+    """Combine samples into fewer, longer steps with the same rotation.
+
+    The vectors of a step are carried to its end by the gyroscope and averaged.
 
     Parameters
     ----------
@@ -125,34 +124,32 @@ def in_blocks(
         carried = np.einsum("nji,nj->ni", dcms[: count * size], values[: count * size])
         blocks = carried.reshape(count, size, 3).mean(axis=1)
         averaged.append(np.einsum("nij,nj->ni", at_end, blocks))
-    # A step is turned by the mean of the rates at its two ends: here by the mean
-    # over it, which is put at its end.
+    # The filter uses the mean of the rates at a step's two ends, so the mean over the step is put
+    # at its end.
     return time[ends], np.concatenate([means[:1], means]), averaged
 
 
 def _earth(forces: Array, field: Array) -> Array:
-    """The field along a ground with x to magnetic north and z up,
-    by its usual dip against gravity.
-    """
+    """Return the field in a ground frame with x to magnetic north and z up, from its median dip."""
     sizes = np.linalg.norm(forces, axis=1) * np.linalg.norm(field, axis=1)
     sine = float(np.clip(np.median((forces * field).sum(axis=1) / sizes), -0.999, 0.999))
     return np.array([np.sqrt(1 - sine**2), 0, sine])
 
 
 class FilterInput(NamedTuple):
-    """What a filter is run on.
+    """What a filter runs on.
 
     Attributes
     ----------
     time : array of shape ``(n,)``
     rates : array of shape ``(n, 3)``
-        Radians per second, means over the step before each time.
+        In radians per second, means over the step before each time.
     forces : array of shape ``(n, 3)``
-        In multiples of gravity: at rest up.
+        In multiples of gravity, pointing up at rest.
     field : array of shape ``(n, 3)`` or None
     noise : Noise
     doubt : array of shape ``(n,)``
-        By how much the direction of each force is less certain than at best, radians.
+        How much less certain than at best the direction of each force is, in radians.
     """
 
     time: Array
@@ -171,25 +168,24 @@ def filter_inputs(
     lying: Sequence[Stretch],
     parts: Sequence[tuple[int, int]] | None = None,
 ) -> list[FilterInput]:
-    """Make a recording ready for a filter: what its instruments are worth, and how
-    far each force is to be believed.
+    """Prepare a recording for a filter, with the noise of its instruments and doubt of each force.
 
     Parameters
     ----------
     time : array of shape ``(n,)``
     rates, forces : arrays of shape ``(n, 3)``
-        Radians per second, the bias removed; multiples of gravity.
+        In radians per second without the bias, and in multiples of gravity.
     field : array of shape ``(n, 3)`` or None
         In multiples of its usual length.
     lying : list of Stretch
-        Where the instrument lies still: there it tells its noise.
+        Stretches of rest, which reveal the noise.
     parts : list of pairs of int, optional
-        First and last sample, the latter not within, of the stretches to judge it on.
+        Ranges of samples to judge the filter on, as first and one past the last.
 
     Returns
     -------
     list of FilterInput
-        In steps of a twentieth of a second, or the recording's own where these are longer.
+        In steps of a twentieth of a second, or in the recording's own steps if these are longer.
     """
     step, noise = float(np.median(np.diff(time))), ASSUMED
     if lying:
@@ -198,7 +194,7 @@ def filter_inputs(
             quiet = [values[one.first : one.last] for one in lying]
             return float(np.sqrt(np.mean([each.var(axis=0, ddof=1).mean() for each in quiet])))
 
-        # A scale that is off by half a per cent errs by that much of each turn.
+        # A scale that is wrong by half a per cent causes that error in each rotation.
         turning = 0.005 * float(np.sqrt(np.mean(rates**2)))
         noise = Noise(
             float(np.hypot(spread(rates) * np.sqrt(step), turning)),
@@ -206,14 +202,15 @@ def filter_inputs(
             max(spread(forces), 1e-3),
             max(spread(field), 1e-3) if field is not None else ASSUMED.field,
         )
-    # While it moves, pushes are taken for gravity, and last for many samples: each counts for less.
+    # In motion, pushes are taken for gravity and last for many samples, so each sample counts less.
     push = np.linalg.norm(forces, axis=1) - 1
     moving = np.ones(len(push), dtype=bool)
     for one in lying:
         moving[one.first : one.last] = False
     usual = np.sqrt(np.mean(push[moving] ** 2)) if moving.any() else 0.0
     doubt = np.where(moving, np.hypot(usual, push) * lasting(push), 0.0)
-    if field is not None:  # iron shows in the field's length, and lasts as well
+    # Iron shows in the field's length, and lasts for many samples as well.
+    if field is not None:
         uneven = np.linalg.norm(field, axis=1) - 1
         noise = noise._replace(
             field=max(noise.field, float(np.sqrt(np.mean(uneven**2))) * lasting(uneven))
@@ -239,13 +236,13 @@ def filter_inputs(
 
 
 def judge(given: FilterInput, progress: Callable[[float], None] | None = None) -> Judgement:
-    """Run a filter forwards and backwards, side by side, and compare.
+    """Run a filter forwards and backwards side by side, and compare the results.
 
     Parameters
     ----------
     given : FilterInput
     progress : callable, optional
-        Called with the share that is done.
+        Called with the fraction that is done.
 
     Returns
     -------
@@ -257,8 +254,8 @@ def judge(given: FilterInput, progress: Callable[[float], None] | None = None) -
     ends = slice(None, lead), slice(-lead, None)
     starts = [_start(forces[end], None if field is None else field[end]) for end in ends]
     doubt = np.hypot(noise.force, given.doubt)
-    # Where it moves, the first look is off by some degrees of tilt, and where the field dips by
-    # more of heading.
+    # In motion, the first estimate is off by some degrees of tilt; with a magnetometer, we allow
+    # for an error of heading as well.
     magnetic = noise.field if field is not None else 0.0
     outset = 0.03 + magnetic + np.minimum(0.4, 8 * doubt[[0, -1]])
     variances = np.stack(
@@ -277,7 +274,8 @@ def judge(given: FilterInput, progress: Callable[[float], None] | None = None) -
     for k in range(count):
         at = order[:, k]
         if k:
-            later = np.maximum(at, order[:, k - 1])  # the same step, forwards and backwards
+            # Index the same step forwards and backwards.
+            later = np.maximum(at, order[:, k - 1])
             estimate.turn(sign * given.rates[later], steps[later - 1])
         by_force = estimate.observe(forces[at], up, doubt[at])
         if field is not None:

@@ -1,6 +1,4 @@
-"""What a gyroscope, and vectors that stay where they are while the
-instrument turns, say of each other.
-"""
+"""Comparison of a gyroscope with vectors that stay fixed while the instrument rotates."""
 
 from __future__ import annotations
 
@@ -15,8 +13,7 @@ from orientation import dcm_from_rotation_vector
 if TYPE_CHECKING:
     from .table import Array
 
-#: The 48 matrices that take axes for each other and change signs;
-#: the proper ones, which turn, first.
+#: The 48 matrices that exchange axes and change signs, with the proper rotations first.
 ASSIGNMENTS = np.array(
     [
         np.diag(signs) @ np.eye(3)[list(order)]
@@ -26,14 +23,14 @@ ASSIGNMENTS = np.array(
 )
 ASSIGNMENTS = ASSIGNMENTS[np.argsort(-np.linalg.det(ASSIGNMENTS), kind="stable")].round()
 PROPER = ASSIGNMENTS[:24]
-#: Where the opposite of each proper one stands.
+#: The index of the opposite of each proper one.
 OPPOSITE = np.array(
     [24 + int(np.abs(ASSIGNMENTS[24:] + one).sum(axis=(1, 2)).argmin()) for one in PROPER]
 )
 
 
 def written(assignment: Array, letters: str = "xyz") -> str:
-    """An assignment in words: what the new x, y and z are.
+    """Return an assignment in words: what the new x, y and z are.
 
     >>> written(np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]]))
     'y, -x, z'
@@ -45,23 +42,24 @@ def written(assignment: Array, letters: str = "xyz") -> str:
 
 
 def turned(rates: Array, steps: Array) -> Array:
-    """Direction cosine matrices of each moment from the first one, by a gyroscope.
+    """Return the direction cosine matrices of each moment relative to the first, by a gyroscope.
 
     Parameters
     ----------
     rates : array of shape ``(..., n, 3)``
-        Radians per second along the body; each holds for the step before it.
+        Radians per second along the body's axes at each sample; a step uses the mean of its two
+        ends.
     steps : array of shape ``(n,)``
         Seconds before each sample; the first is not used.
 
     Returns
     -------
     array of shape ``(..., n, 3, 3)``
-        The body at each moment from the body at the first, ``B_k_C_B_0``.
+        The body at each moment relative to the body at the first, ``B_k_C_B_0``.
     """
     vectors = (rates[..., 1:, :] + rates[..., :-1, :]) / 2 * steps[1:, None]
     count = rates.shape[-2]
-    # Runs of so many: their products side by side, then one after another.
+    # Multiply within runs of this length, all runs at once, and then chain the runs.
     size = int(np.ceil(np.sqrt(count)))
     padding = [(0, 0)] * (rates.ndim - 2) + [(1, size * size - count), (0, 0)]
     dcms = dcm_from_rotation_vector(np.pad(vectors, padding)).reshape(
@@ -75,7 +73,7 @@ def turned(rates: Array, steps: Array) -> Array:
 
 
 def to_rotation_vectors(dcms: Array) -> Array:
-    """Rotation vectors of many direction cosine matrices, for turns of less than half a turn."""
+    """Return rotation vectors of matrices, for rotations of less than half a turn."""
     axis = np.stack(
         [
             dcms[..., 1, 2] - dcms[..., 2, 1],
@@ -90,7 +88,7 @@ def to_rotation_vectors(dcms: Array) -> Array:
 
 
 def steps_of(time: Array) -> Array:
-    """Seconds before each sample."""
+    """Return the seconds before each sample."""
     return np.diff(time, prepend=time[0])
 
 
@@ -103,11 +101,12 @@ class Stretch(NamedTuple):
     Attributes
     ----------
     first, last : int
-        Samples, the last one not within.
+        First sample and one past the last.
     still : bool
-        Whether what the gyroscope says is white: else something alive holds it.
+        Whether the gyroscope's noise is white; otherwise something alive holds the instrument.
     deviation : float
-        Of the angular velocity, root mean square over the axes, radians per second.
+        Standard deviation of the angular velocity, root mean square over the axes, radians per
+        second.
     """
 
     first: int
@@ -116,13 +115,13 @@ class Stretch(NamedTuple):
     deviation: float
 
 
-#: Radians per second: a hand trembles more than that, and an instrument that is held
-#: still by it moves less than that.
+#: In radians per second: a hand trembles more than the first, and an instrument that it holds still
+#: moves less than the second.
 TREMBLE, QUIET = np.radians(0.15), np.radians(4.0)
 
 
 def autocorrelation(rates: Array, lags: int = 5) -> float:
-    """Root mean square correlation of neighbours, less what white noise gives by chance."""
+    """Return the root mean square correlation of neighbours, corrected for that of white noise."""
     count = len(rates)
     rates = rates - rates.mean(axis=0)
     power = (rates**2).sum(axis=0)
@@ -135,8 +134,9 @@ def autocorrelation(rates: Array, lags: int = 5) -> float:
 
 
 def lasting(values: Array, most: float = 0.999) -> float:
-    """By how much less the samples of something that lasts tell than as many
-    that know nothing of each other; neighbours are taken to be at most so much alike.
+    """Return the factor by which correlation between neighbours inflates the error of a mean.
+
+    The correlation is limited to ``most``.
     """
     if values.std() == 0:
         return 1.0
@@ -145,7 +145,7 @@ def lasting(values: Array, most: float = 0.999) -> float:
 
 
 def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
-    """Find where an instrument hardly moves, and whether it lies or is held.
+    """Find where an instrument hardly moves, and whether it is at rest or held.
 
     Parameters
     ----------
@@ -165,8 +165,8 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
     blocks = rates[: count * size].reshape(count, size, 3)
     spread = np.sqrt(blocks.var(axis=1, ddof=1).mean(axis=1))
     calm = spread < min(QUIET, max(6 * np.percentile(spread, 5), np.radians(0.3)))
-    # A bias may drift: calm blocks are compared with those within ten seconds that are as calm, and
-    # less closely with all. Where it is held, a mean is motion.
+    # A bias may drift, so calm blocks are compared closely only with equally calm ones within ten
+    # seconds, and loosely with all. In a hand, a mean that differs is motion.
     means, places = blocks.mean(axis=1), np.flatnonzero(calm)
     near = round(10 / seconds)
     for k in places:
@@ -174,7 +174,7 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
         usual = max(3 * spread[k], np.radians(1.0))
         calm[k] &= np.linalg.norm(means[k] - np.median(means[alike], axis=0)) < usual
         calm[k] &= np.linalg.norm(means[k] - np.median(means[places], axis=0)) < QUIET
-    # A stretch ends where it gets restless, and also where it gets much less calm.
+    # A stretch ends where the instrument gets restless, and also where it gets much less calm.
     runs: list[list[int]] = []
     for k in np.flatnonzero(calm):
         if not runs or k > runs[-1][-1] + 1 or spread[k] > 1.8 * spread[runs[-1]].min():
@@ -186,7 +186,7 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
         deviation = float(np.sqrt(rates[first:last].var(axis=0, ddof=1).mean()))
         lies = bool(autocorrelation(rates[first:last]) < 0.2 or deviation < TREMBLE)
         found.append(Stretch(first, last, lies, deviation))
-    # Wherever an instrument lies, its noise is the same: a jolt among it may also look white.
+    # The noise at rest is the same everywhere, but a jolt in the middle of it may also look white.
     calmest = min((stretch.deviation for stretch in found if stretch.still), default=0.0)
     usual = max(3 * calmest, TREMBLE)
     return [each._replace(still=each.still and each.deviation < usual) for each in found]
@@ -195,20 +195,19 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
 # --- axes, signs, unit and scale of a gyroscope ---------------------------------------------------
 
 
-#: Matrices that are held at one time, some 100 MB with all that is made of them.
+#: How many matrices to hold in memory at a time, which takes some 100 MB in all.
 MOST_AT_ONCE = 200_000
 
 
 class Fit(NamedTuple):
-    """How well each assignment of axes explains what was measured.
+    """How well each assignment of axes explains the measurements.
 
     Attributes
     ----------
     shares : array of shape ``(48,)``
-        What is left of the changes of a vector, as a share of them, by the assignments of
-        ``ASSIGNMENTS``.
+        The unexplained fraction of the changes of a vector, for each assignment in ``ASSIGNMENTS``.
     scale : float
-        By which the gyroscope's numbers are multiplied in the best one.
+        The factor for the gyroscope's values in the best one.
     """
 
     shares: Array
@@ -216,12 +215,12 @@ class Fit(NamedTuple):
 
     @property
     def best(self) -> Array:
-        """The assignment that leaves least."""
+        """The assignment that leaves the least unexplained."""
         return ASSIGNMENTS[self.shares.argmin()]
 
     @property
     def margin(self) -> float:
-        """How many times as much the next one leaves."""
+        """The ratio of the second smallest unexplained fraction to the smallest."""
         first, second = np.sort(self.shares)[:2]
         return float(second / max(first, 1e-9))
 
@@ -229,9 +228,7 @@ class Fit(NamedTuple):
 def pieces(
     time: Array, rates: Array, longest: float = 40.0, seconds: float = 0.5
 ) -> tuple[list[slice[int, int, None]], int]:
-    """Samples, cut into runs of blocks, in which there is most turning: a slice
-    for each run, and the block's size.
-    """
+    """Return the runs of blocks with the most rotation, as slices, and the size of a block."""
     step = np.median(np.diff(time))
     size = max(2, round(seconds / step))
     run = 8 * size
@@ -249,25 +246,25 @@ def fit_axes(
     seconds: float = 0.5,
     longest: float = 40.0,
 ) -> Fit:
-    """Try all 48 assignments of a gyroscope's axes to those of a vector that stays where it is.
+    """Try all 48 assignments of a gyroscope's axes to those of a vector that stays fixed.
 
-    While the instrument turns, a vector that stays (gravity, the Earth's field) turns backwards in
-    it. Carried back by the gyroscope, its means over short blocks must agree with those of the next
-    block.
+    While the instrument rotates, a fixed vector (gravity, the Earth's field) rotates the opposite
+    way relative to it. Carried back by the gyroscope, its means over short blocks must agree with
+    those of the next block.
 
     Parameters
     ----------
     time : array of shape ``(n,)``
     rates : array of shape ``(n, 3)``
-        As the gyroscope prints them.
+        As the gyroscope gives them.
     vectors : array of shape ``(n, 3)``
         At the same times.
     scales : array of shape ``(m,)``
-        What to multiply the rates by.
+        Factors to try for the rates.
     seconds : float
         Length of a block.
     longest : float
-        How many seconds to look at: those with most turning.
+        How many seconds to use; those with the most rotation are chosen.
 
     Returns
     -------
@@ -295,7 +292,8 @@ def fit_axes(
             )
             differences = change.reshape(-1, 9) @ PROPER.swapaxes(-1, -2).reshape(24, 9).T / size
             left[some] += (differences**2).reshape(len(some), -1, 24).sum(axis=1)
-    # The gyroscope's axes, taken so, are those of the vector: G, and -G of the mirror images.
+    # With these assignments the gyroscope's axes are those of the vector: G, and -G for
+    # reflections.
     shares = np.empty((len(scales), 48))
     shares[:, :24], shares[:, OPPOSITE] = np.split(np.sqrt(left / max(moved, 1e-300)), 2)
     best = np.unravel_index(shares.argmin(), shares.shape)[0]
@@ -303,9 +301,7 @@ def fit_axes(
 
 
 def carried(time: Array, rates: Array, poses: Sequence[Stretch]) -> Array:
-    """Turns from the middle of each pose to that of the next, by a
-    gyroscope; shape ``(..., m - 1, 3, 3)``.
-    """
+    """Return rotations between the middles of poses, of shape ``(..., m - 1, 3, 3)``."""
     found = []
     for one, other in zip(poses, poses[1:], strict=False):
         part = slice((one.first + one.last) // 2, (other.first + other.last) // 2 + 1)
@@ -314,19 +310,20 @@ def carried(time: Array, rates: Array, poses: Sequence[Stretch]) -> Array:
 
 
 class ScaleFit(NamedTuple):
-    """Scales and bias of a gyroscope: the true angular velocity is ``scales * (rates - bias -
-    drift * course)``.
+    """Scales and bias of a gyroscope.
+
+    The true angular velocity is ``scales * (rates - bias - drift * course)``.
 
     Attributes
     ----------
     scales, spreads : arrays of shape ``(3,)``
-        Of each axis, and their standard deviations.
+        The scale of each axis, and their standard deviations.
     bias, bias_spreads : arrays of shape ``(3,)``
-        Radians per second; zeros as its deviations where it was known.
+        In radians per second, and their standard deviations, which are zero if the bias was given.
     drift, drift_spreads : arrays of shape ``(3,)``
-        Radians per second for each unit of the course; zeros where none was given.
+        In radians per second for each unit of the course; zeros if no course was given.
     left : float
-        By how much gravity is missed, radians.
+        The remaining error of gravity's direction, in radians.
     left_alike : float
         The same with one scale for all axes.
     """
@@ -355,18 +352,18 @@ def fit_scales(
     bias: Array | None = None,
     course: Array | None = None,
 ) -> ScaleFit | None:
-    """Scales and bias of a gyroscope: turns must carry gravity from one pose to the next.
+    """Fit scales and bias so that rotations carry gravity from one pose to the next.
 
     Parameters
     ----------
     time : array of shape ``(n,)``
     rates, forces : arrays of shape ``(n, 3)``
-        Along the same axes, rates in radians per second.
+        Along the same axes, with the rates in radians per second.
     poses : list of Stretch
     bias : array of shape ``(3,)``, optional
-        Radians per second, where it is known.
+        In radians per second, if it is known.
     course : array of shape ``(n,)``, optional
-        What a bias that drifts is proportional to, such as time: zero where the bias is as above.
+        What a drifting bias is proportional to, such as time; zero where the bias is ``bias``.
 
     Returns
     -------
@@ -383,17 +380,17 @@ def fit_scales(
     course = np.zeros((len(time), 1)) if course is None else course[:, None]
 
     def residuals(parameters: Array) -> Array:
-        """By how much gravity is missed with scales, biases and drifts of shape ``(..., 9)``."""
+        """Return the errors of gravity for scales, biases and drifts of shape ``(..., 9)``."""
         scales, biases, drifts = np.split(parameters[..., None, :], 3, axis=-1)
         turns = carried(time, scales * (rates - biases - drifts * course), poses)
         off = ups[1:] - (turns @ ups[:-1, :, None])[..., 0]
         return off.reshape(*off.shape[:-2], -1)
 
-    # Several turns have many scales that nearly fit: the best one of a grid is refined.
+    # With several rotations many scales nearly fit, so we refine the best one of a grid.
     tried = np.repeat(np.geomspace(0.4, 2.5, 47)[:, None], 9, axis=1)
     tried[:, 3:] = np.concatenate([np.zeros(3) if bias is None else bias, np.zeros(3)])
     start = parameters = tried[int(np.abs(residuals(tried)).sum(axis=-1).argmin())]
-    # Scales of one part are much alike, and a bias or drift is some degrees per second at most.
+    # The scales of one sensor are similar, and its bias and drift at most a few degrees per second.
     usual = np.repeat([0.3 * start[0], np.radians(1.0), np.radians(2.0)], 3)
     prior = np.diag(usual[free] ** -2.0)
     spreads = np.zeros(9)
@@ -401,7 +398,8 @@ def fit_scales(
         at, *moved = residuals(parameters + 1e-5 * np.eye(10, 9, -1)[[0, *(free + 1)]])
         slopes = (np.array(moved) - at).T / 1e-5
         noise = max(np.sqrt(np.median(at**2)) * 1.5, 0.003)
-        weights = 1 / np.maximum(noise, np.abs(at)) / noise  # a wild transition counts less
+        # An outlier counts less.
+        weights = 1 / np.maximum(noise, np.abs(at)) / noise
         information = (slopes * weights[:, None]).T @ slopes + prior
         pull = (slopes * weights[:, None]).T @ -at - prior @ (parameters - start)[free]
         change = np.zeros(9)
@@ -418,7 +416,7 @@ def fit_scales(
 
 
 def _rms(off: Array) -> float:
-    """Root mean square length of vectors whose components stand in one row."""
+    """Return the root mean square length of vectors whose components are in one row."""
     return float(np.sqrt((off**2).mean() * 3))
 
 
@@ -431,14 +429,14 @@ class Reading(NamedTuple):
     Attributes
     ----------
     disagreement : float
-        Between the turns of the orientation and those of the gyroscope, as a share of the latter.
+        Between the rotations of the orientation and of the gyroscope, relative to the latter.
     order : str
-        ``scalar first`` or ``scalar last``; of angles the sequence, as in ``zyx (yaw, pitch,
-        roll)``.
+        ``scalar first`` or ``scalar last``; for angles the sequence, as in
+        ``zyx (yaw, pitch, roll)``.
     conjugate : bool
-        Whether what stands there is the other way round than in the book: the ground from the body.
+        Whether the values are the inverse of the book's: the ground relative to the body.
     mounting : array of shape ``(3, 3)``
-        The body of the orientation from the axes of the gyroscope.
+        The orientation's body frame relative to the axes of the gyroscope.
     """
 
     disagreement: float
@@ -448,7 +446,7 @@ class Reading(NamedTuple):
 
 
 def dcm_of_quaternions(values: Array, order: str) -> Array:
-    """``B_C_N`` of quaternions, read in the book's way, with their scalar first or last."""
+    """Return ``B_C_N`` of quaternions, read as in the book, with their scalar first or last."""
     values = values / np.linalg.norm(values, axis=1, keepdims=True)
     w, x, y, z = (values if order == "scalar first" else np.roll(values, 1, axis=1)).T
     rows = [
@@ -462,13 +460,13 @@ def dcm_of_quaternions(values: Array, order: str) -> Array:
 def readings(
     time: Array, rates: Array, orientation_time: Array, candidates: Mapping[str, Array]
 ) -> list[Reading]:
-    """Read an orientation in every way there is, and compare its turns with those of the gyroscope.
+    """Read an orientation in every possible way, and compare its rotations with the gyroscope's.
 
     Parameters
     ----------
     time : array of shape ``(n,)``
     rates : array of shape ``(n, 3)``
-        Of the gyroscope, radians per second.
+        The gyroscope's angular velocities, in radians per second.
     orientation_time : array of shape ``(m,)``
     candidates : dict
         Arrays of shape ``(m, 3, 3)`` by the name of the order.
@@ -476,14 +474,14 @@ def readings(
     Returns
     -------
     list of Reading
-        The best one first. Where several fit as well, those come first that change least.
+        The best one first. If several fit equally well, those that change least come first.
     """
     steps = steps_of(time)
     vectors = np.concatenate([np.zeros((1, 3)), (rates[1:] + rates[:-1]) / 2 * steps[1:, None]])
     path = np.cumsum(vectors, axis=0)
     inside = (orientation_time >= time[0] - 1e-9) & (orientation_time <= time[-1] + 1e-9)
-    # An orientation may be printed for each sample or now and then: a turn over
-    # a tenth of a second is compared.
+    # An orientation may be printed at any interval, so we compare rotations over a twentieth of a
+    # second or more.
     stride = max(1, round(0.05 / np.median(np.diff(orientation_time))))
     places = np.flatnonzero(inside)[::stride]
     at = np.stack(
@@ -499,7 +497,7 @@ def readings(
     for name, dcms in candidates.items():
         dcms = dcms[places]
         for conjugate in (False, True):
-            # B_C_N, or its transpose: then the turns are written along the other side.
+            # B_C_N, or its transpose, whose rotations are relative to the other frame.
             forth, back = dcms[1:], dcms[:-1].swapaxes(-1, -2)
             turn = forth.swapaxes(-1, -2) @ dcms[:-1] if conjugate else forth @ back
             turn = to_rotation_vectors(turn)[use]

@@ -1,4 +1,4 @@
-"""A recording judged where a reader drops it: the report, to be looked at and to be kept."""
+"""A recording judged on a page: the report, to look at and to save."""
 
 from __future__ import annotations
 
@@ -11,23 +11,22 @@ from .examined import Examined, as_text
 from .report import CONVENTIONS, as_csv, as_fragment, as_html
 from .table import RecordingError
 
-#: Where the pages put what is dropped.
+#: The folder where the pages put dropped files.
 DROPPED = "dropped"
-#: Samples of which a page can hold the corrected recording; for more there is the command.
+#: The most samples of a corrected recording on a page; beyond that, use the command.
 LONGEST = 30_000
 
 
 class Judged:
-    """A report that a notebook shows as a table with plots, and links under which
-    it and what it corrects are saved.
+    """A report that a notebook shows as a table with plots and links to save the results.
 
     Attributes
     ----------
     examined : Examined or None
     words : str
-        What there is to say instead of a report.
+        The message shown if there is no report.
     convention : str
-        Of the orientation in the corrected recording.
+        The convention of the orientation in the corrected recording.
     """
 
     def __init__(
@@ -74,24 +73,25 @@ def judged(
     convention: str = "wxyz",
     columns: str = "",
 ) -> Judged:
-    """Put what was dropped, or a file of one's own, on the bench.
+    """Examine dropped files, or the reader's own.
 
     Parameters
     ----------
     source : path
-        A file, or a folder with files of one recording.
+        A file, or a folder with the files of one recording.
     rate : float, optional
-        Samples per second, where the file only counts them.
+        Samples per second, if the file only counts its samples.
     convention : str
-        Of the orientation in the corrected recording: ``wxyz``, ``xyzw`` or ``yaw-pitch-roll``.
+        The convention of the orientation in the corrected recording: ``wxyz``, ``xyzw`` or
+        ``yaw-pitch-roll``.
     columns : str
-        What the columns are, where the file does not say it, such as
+        The meaning of the columns, if the file does not give it, such as
         ``'time=1 gyroscope=2-4:rad/s accelerometer=5-7'``.
 
     Returns
     -------
     Judged
-        With a report, or with the word why there is none.
+        With a report, or a message saying why there is none.
 
     Examples
     --------

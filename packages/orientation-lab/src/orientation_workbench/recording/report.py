@@ -1,4 +1,4 @@
-"""What the bench has found, as one page, and as the corrected recording."""
+"""The bench's findings as one page, and the corrected recording."""
 
 from __future__ import annotations
 
@@ -18,31 +18,32 @@ if TYPE_CHECKING:
 
     from .examined import Examined
 
-#: Ways to write an orientation down, by what the command calls them.
+#: The ways to write an orientation, by their names in the command.
 CONVENTIONS = ("wxyz", "xyzw", "yaw-pitch-roll")
 
 
 def as_csv(examined: Examined, convention: str = "wxyz") -> str:
-    """The corrected recording as CSV.
+    """Return the corrected recording as CSV.
 
     Parameters
     ----------
     examined : Examined
     convention : str
-        Of the filter's orientation, the body's with respect to a ground with z up: ``wxyz`` and
-        ``xyzw`` for a quaternion with its scalar first or last, ``yaw-pitch-roll`` for degrees,
-        body fixed z-y-x.
+        The form of the filter's orientation, which is the body's relative to a ground with z up:
+        ``wxyz`` or ``xyzw`` for a quaternion with its scalar first or last, ``yaw-pitch-roll`` for
+        body fixed z-y-x angles in degrees.
 
     Returns
     -------
     str
         Angular velocity in radians per second, specific force in multiples of gravity, the field in
-        multiples of its length, and the filter's orientation where it ran: elsewhere it is missing.
+        multiples of its length, and the filter's orientation, which is missing where the filter did
+        not run.
 
     Raises
     ------
     ValueError
-        If the convention is another.
+        If the convention is unknown.
     """
     if convention not in CONVENTIONS:
         raise ValueError(f"unknown convention {convention!r}: choose {', '.join(CONVENTIONS)}")
@@ -79,11 +80,11 @@ def as_csv(examined: Examined, convention: str = "wxyz") -> str:
 
 
 def as_code(examined: Examined) -> str:
-    """Lines of NumPy that correct a recording of the same instrument as this one was.
+    """Return lines of NumPy that correct a recording of the same instrument.
 
     They take ``gyroscope``, ``accelerometer`` and ``magnetometer``, arrays of shape ``(n, 3)`` as
-    the file has them, and give ``rates`` in radians per second, ``forces`` in multiples of gravity
-    and ``field`` in multiples of its length.
+    in the file, and compute ``rates`` in radians per second, ``forces`` in multiples of gravity and
+    ``field`` in multiples of its length.
     """
     facts, lines = examined.facts, ["import numpy as np", ""]
     lengths = {"g": facts.get("gravity"), "b": facts.get("strength of the field")}
@@ -107,7 +108,7 @@ def as_code(examined: Examined) -> str:
 
 
 def as_fragment(examined: Examined) -> str:
-    """The report for a page of another's: verdicts, plots and code."""
+    """Return the report as HTML for another page: verdicts, plots and code."""
     rows = "".join(
         f'<tr class="{verdict.light.replace(" ", "-")}"><td>{verdict.light}</td>'
         f'<th scope="row">{escape(verdict.about)}</th>'
@@ -128,7 +129,7 @@ def as_fragment(examined: Examined) -> str:
 
 
 def _in_short(examined: Examined) -> str:
-    """Which lights are not green, the worst first."""
+    """List the lights that are not green, the worst first."""
     lit = {
         light: dict.fromkeys(
             verdict.about for verdict in examined.verdicts if verdict.light == light
@@ -144,9 +145,7 @@ def _in_short(examined: Examined) -> str:
 
 
 def as_html(examined: Examined, fragment: str | None = None) -> str:
-    """The report as one page that needs nothing else, and can be kept;
-    ``fragment`` is its body where it is made.
-    """
+    """Return the report as a self-contained page; give ``fragment`` if its body already exists."""
     name = escape(examined.name)
     return (
         '<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" '
@@ -184,7 +183,7 @@ padding: .35rem .6rem .35rem 0; border: 0; border-top: 1px solid #8886; overflow
 
 
 def plots(examined: Examined) -> list[tuple[str, str]]:
-    """Pairs of an SVG and of what it shows, in words; none where Matplotlib is missing."""
+    """Return pairs of an SVG and its description, or none without Matplotlib."""
     try:
         from matplotlib.figure import Figure
     except ImportError:
@@ -195,7 +194,7 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
 
     @contextmanager
     def drawing(height: float, words: str, across: str, up: str) -> Iterator[Axes]:
-        # The words of the figure can be read on a telephone.
+        # At this size the words in the figure are legible on a phone.
         figure = Figure(figsize=(6.2, height), layout="constrained")
         axes, text = figure.subplots(), io.StringIO()
         axes.set(xlabel=across, ylabel=up)
@@ -268,7 +267,7 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
             for judgement in examined.judgements:
                 axes.plot(judgement.times, judgement.apart, color=blue, linewidth=thin)
                 axes.plot(judgement.times, judgement.claims, "--", color=red, linewidth=thin)
-            # At either end a run has seen little, and claims little: that would dwarf the rest.
+            # At either end a run has seen little and claims little, which would dwarf the rest.
             usual = [values for run in examined.judgements for values in (run.apart, run.claims)]
             axes.set_ylim(0, 1.5 * np.percentile(np.concatenate(usual), 98) + 1e-3)
     return pictures

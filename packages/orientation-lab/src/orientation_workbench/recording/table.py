@@ -1,8 +1,7 @@
-"""Tables of numbers out of whatever a recording came in: text, JSON, a
-folder, a zip, or zips in a folder.
+"""Tables of numbers from any form of recording: text, JSON, a folder, a zip, or zips in a folder.
 
-Nothing is repaired: a row that does not fit is left out, counted and named by its line and column;
-where many do not fit, the file is refused in the same words.
+Nothing is repaired. A row that does not fit is left out, counted, and reported by line and column;
+if many do not fit, the file is refused in the same words.
 """
 
 from __future__ import annotations
@@ -29,13 +28,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array: TypeAlias = NDArray[np.float64]
-    #: A file, a folder or several of them, or what a file holds.
+    #: A file, a folder or several of them, or the content of a file.
     Source: TypeAlias = str | Path | bytes | Sequence[str | Path]
 
-DELIMITERS = (",", ";", "\t", "|", None)  # None stands for blanks
+# None stands for spaces.
+DELIMITERS = (",", ";", "\t", "|", None)
 TEXTS = (".csv", ".txt", ".tsv", ".log", ".json", ".dat", ".gz", ".zip")
 EXCEL = "an Excel workbook: save it as CSV (phyphox can export CSV directly)"
-#: How formats begin that are no text, and what writes them as text.
+#: The first bytes of formats that are not text, and what converts them to text.
 ELSEWHERE = {
     b"ULog": "a PX4 log: convert it to tables with ulog2csv, from the package pyulog",
     b"\xa3\x95": "an ArduPilot log: convert it with mavlogdump.py --format csv --types IMU",
@@ -48,36 +48,33 @@ ELSEWHERE = {
     b"MATLAB 5.0": "a MATLAB file: convert it to CSV with writetable or writematrix",
 }
 MISSING = {"", "nan", "null", "none", "na", "n/a", "-", "--"}
-MOST_BROKEN = 0.02  # share of the rows that may not fit before a file is refused
+# The largest fraction of rows that may not fit before a file is refused.
+MOST_BROKEN = 0.02
 
 
 class RecordingError(ValueError):
-    """What keeps a file from being read as a recording, with its
-    line and column where there is one.
-    """
+    """The reason why a file cannot be read as a recording, with line and column if known."""
 
 
 class BrokenTable(RecordingError):
-    """A table too many of whose rows do not fit: not a remark that
-    stands beside the measurements.
-    """
+    """A table with too many rows that do not fit, as opposed to a note beside the data."""
 
 
 class Table(NamedTuple):
-    """Columns of numbers that were measured together.
+    """Columns of numbers measured together.
 
     Attributes
     ----------
     name : str
-        Of the file, or of the kind of line in a log.
+        The name of the file, or of a kind of line in a log.
     columns : list of str
-        As the file names them; ``column 1`` and so on where it does not.
+        As the file names them; ``column 1`` and so on if it does not.
     values : array of shape ``(n, m)``
-        Missing ones are NaN.
+        Missing values are NaN.
     remarks : list of str
         What did not fit, with lines and columns.
     head : str
-        What stands above the numbers.
+        The text above the numbers.
     """
 
     name: str
@@ -88,7 +85,7 @@ class Table(NamedTuple):
 
 
 def number_of(count: int, noun: str) -> str:
-    """A number of things in words.
+    """Return a number of things in words.
 
     >>> number_of(1, 'row'), number_of(2, 'row')
     ('1 row', '2 rows')
@@ -97,15 +94,15 @@ def number_of(count: int, noun: str) -> str:
 
 
 def read_tables(source: Source, name: str | None = None) -> list[Table]:
-    """Read all tables of files, of a folder, or of a text that is at hand.
+    """Read all tables of files, of a folder, or of text already in memory.
 
     Parameters
     ----------
     source : path, list of paths, bytes or str
-        A file, a folder, or several of them; or what a file holds: bytes, or a text of more than
-        one line.
+        A file, a folder, or several of them; or the content of a file, as bytes or as a text of
+        more than one line.
     name : str, optional
-        What to call it, where it comes without a name.
+        The name of content given without one.
 
     Returns
     -------
@@ -190,7 +187,7 @@ def _unpacked(content: bytes, name: str) -> list[Table]:
 
 
 def _from_several(files: Iterable[tuple[str, Callable[[], bytes]]], name: str) -> list[Table]:
-    """All tables of pairs of a name and what reads it."""
+    """Return all tables of pairs of a name and a function that reads the content."""
     tables: list[Table] = []
     broken: list[str] = []
     reasons: list[str] = []
@@ -201,10 +198,11 @@ def _from_several(files: Iterable[tuple[str, Callable[[], bytes]]], name: str) -
             )
         except BrokenTable as error:
             broken.append(str(error))
-        except OSError as error:  # Others may move a file of a folder meanwhile, or hold it open.
+        except OSError as error:
+            # Others may move a file in the meantime, or hold it open.
             broken.append(f"left out {one}: {error.strerror or error}")
         except RecordingError as error:
-            # Beside the measurements there are often settings and remarks.
+            # The measurements often come with settings and notes.
             reasons.append(str(error))
     if not tables:
         raise RecordingError("; ".join([f"{name} contains no table of numbers", *broken, *reasons]))
@@ -231,9 +229,7 @@ def _from_text(text: str, name: str) -> list[Table]:
 
 
 def _key_column(rows: Sequence[Sequence[str]], comma: bool) -> int | None:
-    """The column that says what each row holds, where rows of several
-    kinds or instruments take turns.
-    """
+    """Return the column that says what each row holds, if rows of different kinds alternate."""
     rows = [row for row in rows if len(row) > 3]
     if len(rows) <= 20:
         return None
@@ -250,7 +246,7 @@ def _key_column(rows: Sequence[Sequence[str]], comma: bool) -> int | None:
         ) < 0.2 * len(found)
         if words and k == 0:
             return 0
-        # Labels change now and then; what takes turns does so nearly always.
+        # Labels change now and then, but alternating rows change the key nearly every time.
         turns = sum(one != other for one, other in zip(found, found[1:], strict=False)) > 0.3 * len(
             found
         )
@@ -263,9 +259,7 @@ def _key_column(rows: Sequence[Sequence[str]], comma: bool) -> int | None:
 
 
 def _scaled(table: Table) -> Table:
-    """Counts, where the lines above them name their scales, as cameras
-    that steady a picture write them.
-    """
+    """Scale raw counts if the lines above them name the scales, as stabilised cameras do."""
     scales = {
         letter: float(value)
         for letter, value in re.findall(r"^([tgam])scale\W+([\d.eE+-]+)$", table.head, re.M)
@@ -293,7 +287,7 @@ def _is_comma(field: str) -> bool:
 
 
 def _number(field: str, comma: bool = False) -> float | None:
-    """The number that a field says, NaN for one that is missing, None for what is no number."""
+    """Return the number in a field, NaN for a missing one, None for anything else."""
     try:
         return float(field.replace(",", ".") if comma else field)
     except ValueError:
@@ -318,7 +312,7 @@ def _number(field: str, comma: bool = False) -> float | None:
 
 
 def _numbers_per_line(lines: Sequence[str], delimiter: str | None) -> float:
-    """The median count of numbers in the lines of the middle, were they parted so."""
+    """Return the median count of numbers in the middle lines, split by this delimiter."""
     middle = [line for line in lines[len(lines) // 4 :] if line.strip()][:200]
     counts = [
         sum(
@@ -338,9 +332,7 @@ def _table(
     numbers: Iterable[int] | None = None,
     columns: Sequence[str] | None = None,
 ) -> Table:
-    """One table out of rows of fields; ``numbers`` are the lines'
-    numbers, where they are not all there.
-    """
+    """Make a table of rows of fields; ``numbers`` are their line numbers, if lines are missing."""
     numbers = range(1, len(rows) + 1) if numbers is None else numbers
     there = [(line, row) for line, row in zip(numbers, rows, strict=True) if any(row)]
     widths = Counter(len(row) for _, row in there)
@@ -410,11 +402,9 @@ def _table(
 
 
 def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
-    """Names of the columns: of the last line above the numbers that has
-    as many, with the units below it.
-    """
+    """Return the column names from the lines above the numbers, with any units below."""
     bare = [[re.sub(r"^[#%/\s\"']+|[\"']+$", "", field) for field in row] for row in head]
-    # A sign that stands alone.
+    # Drop a lone comment sign at the start of the line.
     bare = [row[1:] if len(row) == width + 1 and not row[0] else row for row in bare]
     bare = [
         row
@@ -423,8 +413,8 @@ def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
     ]
     if not bare:
         return [f"column {k + 1}" for k in range(width)]
-    # Above the numbers there may be lines of kinds and of units: they
-    # repeat themselves, names do not.
+    # Above the numbers there may be lines of kinds and units, which repeat themselves; names do
+    # not.
     most = max(range(len(bare)), key=lambda k: (len(set(bare[k])), k))
     names = bare[most]
     below = bare[-1]
@@ -438,26 +428,26 @@ def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
 
 
 def _from_log(rows: Sequence[list[str]], name: str, comma: bool, key: int) -> list[Table]:
-    """A log of lines of several kinds, as those of drones and phones:
-    which, a word says, mostly the first.
-    """
+    """Split a log with several kinds of lines by their key word, as in drones and phones."""
     lines: dict[str, list[tuple[int, list[str]]]] = {}
     names: dict[str, list[str]] = {}
     for number, row in enumerate(rows, 1):
         if len(row) < max(3, key + 1):
             continue
-        # Of ArduPilot: type, length, name, formats, names of the columns.
+        # In ArduPilot: type, length, name, formats, names of the columns.
         if row[0] == "FMT" and len(row) > 5:
             names[row[3]] = row[5:]
-        elif row[0].startswith("#"):  # of Android: a heading of each kind among the remarks
+        elif row[0].startswith("#"):
+            # In Android, a heading of each kind is among the comments.
             names[row[0].lstrip("# ")] = row[1:]
         else:
-            # Of several instruments of one kind each is a table of its own.
+            # Each of several instruments of one kind gets a table of its own.
             columns = names.get(row[0], [])
             which = columns.index("I") + 1 if "I" in columns else len(row)
             kind = row[key] if which >= len(row) or row[which] == "0" else f"{row[0]} {row[which]}"
             lines.setdefault(kind, []).append((number, row[:key] + row[key + 1 :]))
-    if key:  # one line of headings for all
+    # One line of headings is common to all.
+    if key:
         heads = [found[0][1] for found in lines.values() if len(found) < 8]
         names = {kind: head for kind in lines for head in heads[:1]}
     tables = []
@@ -476,7 +466,8 @@ def _from_log(rows: Sequence[list[str]], name: str, comma: bool, key: int) -> li
                     called if called and len(called) == width else None,
                 )
             )
-        except RecordingError:  # a kind of line that holds no measurements
+        except RecordingError:
+            # This kind of line holds no measurements.
             continue
     if not tables:
         raise RecordingError(
