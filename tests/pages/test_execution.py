@@ -129,20 +129,22 @@ def test_the_real_packages_are_followed():
 
 @pytest.mark.long
 def test_a_run_side_by_side_says_nothing_of_its_processes(tmp_path):
-    program = (
-        "import sys\nfrom jupyter_cache import get_cache\n"
-        "from notebook_pages.execution import Executor\n"
-        "cache = get_cache(sys.argv[1])\nrecords = [cache.add_nb_to_project(path) for path in "
-        "sys.argv[2:]]\n"
-        "done = Executor(cache).run_and_cache(filter_pks=[record.pk for record in records])\n"
-        "assert len(done.succeeded) == 2, done\n"
-    )
-    paths = [tmp_path / name for name in ("one.ipynb", "two.ipynb")]
-    for path in paths:
-        about = {
-            "kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}
-        }
-        nbformat.write(new_notebook(cells=[new_code_cell("1 + 1")], metadata=about), path)
+    program = """
+import sys
+from types import SimpleNamespace
+from jupyter_cache import get_cache
+from notebook_pages.execution import run_side_by_side
+folder, *paths = sys.argv[1:]
+config = SimpleNamespace(
+    execution_mode="cache", execution_cache_path=folder, execution_timeout=60
+)
+run_side_by_side(None, SimpleNamespace(mystnb_config=config, doc2path=str), paths)
+assert len(get_cache(folder).list_cache_records()) == 2
+"""
+    about = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+    paths = [tmp_path / name for name in ("one.ipynb", "two.ipynb", "copy of one.ipynb")]
+    for path, code in zip(paths, ("1 + 1", "2 + 2", "1 + 1"), strict=True):
+        nbformat.write(new_notebook(cells=[new_code_cell(code)], metadata=about), path)
     command = [sys.executable, "-c", program, tmp_path / "cache", *paths]
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")

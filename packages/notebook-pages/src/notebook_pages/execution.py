@@ -95,16 +95,18 @@ def run_side_by_side(app, env, docnames):
     if env.mystnb_config.execution_mode != "cache":
         return
     cache = get_cache(env.mystnb_config.execution_cache_path)
-    records = []
+    # Notebooks with the same code share one run; two at once would store it twice, which fails.
+    records = {}
     for path in (str(env.doc2path(name)) for name in docnames if not name.startswith(STORED)):
         if path.endswith(".ipynb"):
             record = cache.add_nb_to_project(path)
             if cache.get_cached_project_nb(record.uri) is None:
-                records.append(record)
+                _, key = cache.create_hashed_notebook(cache.get_project_notebook(path).nb)
+                records[key] = record
     if len(records) > 1:
         # Cells that fail are not cached: MyST-NB runs them again and reports the failure.
         Executor(cache).run_and_cache(
-            filter_pks=[record.pk for record in records],
+            filter_pks=[record.pk for record in records.values()],
             timeout=env.mystnb_config.execution_timeout,
         )
 
