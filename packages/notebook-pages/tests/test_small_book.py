@@ -37,6 +37,22 @@ def build(book):
     return book / "_build" / "html"
 
 
+@pytest.mark.parametrize(
+    ("name", "text", "reason"),
+    [
+        ("_config.yml", None, "Run this in the folder of the book"),
+        ("_toc.yml", "format: jb-book\nroot: intro\nchapters: []\n", "write `root: index`"),
+        ("levers.ipynb", "<<<<<<< HEAD\n{}", "levers.ipynb is not a notebook"),
+    ],
+)
+def test_a_book_that_cannot_be_built_says_why(tmp_path, name, text, reason):
+    book = shutil.copytree(HERE / "small-book", tmp_path / "book")
+    (book / name).write_text(text) if text else (book / name).unlink()
+    with pytest.raises(AssertionError) as refused:
+        build(book)
+    assert reason in str(refused.value) and "Traceback" not in str(refused.value)
+
+
 @pytest.fixture(scope="module")
 def built(tmp_path_factory, take_compiled_wheels):
     """The folder of the site."""

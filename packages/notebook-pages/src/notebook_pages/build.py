@@ -1,17 +1,50 @@
 """``python -m notebook_pages.build``: build the book, and fail unless all of it was built."""
 
+import json
 import shutil
 import subprocess
 import sys
 import time
 import traceback
+from pathlib import Path
 
 import yaml
 
 from . import unchanged
-from .paths import BUILD, HTML, contents, exam_edition, let_everybody_read, pages
+from .paths import (
+    BUILD,
+    HTML,
+    NODE_MODULES,
+    contents,
+    exam_edition,
+    let_everybody_read,
+    pages,
+)
 
 EXAM_CONTENTS = BUILD / "_toc.yml"  # the contents of an exam edition
+
+
+def what_prevents_building():
+    """Return a sentence about the first thing without which nothing can be built, or None."""
+    for name in ("_config.yml", "_toc.yml"):
+        if not Path(name).is_file():
+            return f"there is no {name} in {Path.cwd()}. Run this in the folder of the book."
+    if (root := contents()["root"]) != "index":
+        return (
+            f"_toc.yml begins with `root: {root}`. Rename that page to `index`, because browsers "
+            "open index.html first, and write `root: index`."
+        )
+    if not NODE_MODULES.is_dir():
+        return f"{NODE_MODULES} is missing. Run `python -m notebook_pages.set_up` first."
+    for notebook in filter(Path.is_file, (Path(f"{page}.ipynb") for page in pages())):
+        try:
+            json.loads(notebook.read_text("utf8"))
+        except ValueError as error:
+            return (
+                f"{notebook} is not a notebook: {error}. Perhaps a merge left lines in it that "
+                "begin with <<<<<<< or >>>>>>>."
+            )
+    return None
 
 
 def missing_pages():
@@ -63,6 +96,8 @@ def make_pages():
 
 def main():
     start = time.monotonic()
+    if reason := what_prevents_building():
+        sys.exit(f"The book cannot be built: {reason}")
     made_from = unchanged.of_sources()
     if unchanged.is_unchanged(made_from):
         print(f"Nothing has changed since the last build: {HTML / 'index.html'}")

@@ -159,6 +159,9 @@ def is_solutions(page: str) -> bool:
 def contents() -> Contents:
     """Read ``_toc.yml``, in an exam edition without the pages of worked solutions."""
     table: Contents = yaml.load(Path("_toc.yml").read_text("utf8"), YAML)
+    # A short book needs no parts.
+    if "chapters" in table:
+        table["parts"] = [{"caption": "", "chapters": table.pop("chapters")}]
     if exam_edition():
         for part in table["parts"]:
             part["chapters"] = [

@@ -50,7 +50,6 @@ def fetch_packages():
 def fetch_wheels():
     runtime = FETCHED / ".venv" / "runtime"
     print(f"Setting up Python packages for browsers in {runtime} ...")
-    shutil.rmtree(runtime, ignore_errors=True)
     command = [
         sys.executable,
         "-m",
@@ -63,10 +62,14 @@ def fetch_wheels():
         *IN_BROWSERS,
         "--require-hashes",
     ]
-    for wheels in WHEELS:
-        subprocess.run(
-            [*command, "--requirement", wheels, "--dest", runtime / wheels.parent.name], check=True
-        )
+    runtime.parent.mkdir(parents=True, exist_ok=True)
+    # Replace the old wheels only when all new ones have arrived.
+    with tempfile.TemporaryDirectory(dir=runtime.parent) as folder:
+        for wheels in WHEELS:
+            place = Path(folder, "runtime", wheels.parent.name)
+            subprocess.run([*command, "--requirement", wheels, "--dest", place], check=True)
+        shutil.rmtree(runtime, ignore_errors=True)
+        Path(folder, "runtime").rename(runtime)
 
 
 PARTS = {"packages": fetch_packages, "wheels": fetch_wheels}

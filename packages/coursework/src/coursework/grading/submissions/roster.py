@@ -205,26 +205,36 @@ class Roster:
         )
 
 
-def cells_in(path: Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
-    """Return a table's column names in lower case, and an iterator over the cells of each line."""
+def cells_in(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Return a table's column names in lower case, and the number and cells of each line."""
     data = path.read_bytes()
     encoding, mark = encoding_of(data)
     text = data[len(mark) :].decode(encoding)
     first = text.split("\n", 1)[0]
     # Split lines only where CSV does. Students choose their names, and with a rarer line separator
     # in them they could begin a line of their own.
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
-    header = [name.strip().casefold() for name in next(reader, [])]
-    return header, ((reader.line_num, list(map(str.strip, cells))) for cells in reader)
+    reader = csv.reader(
+        io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count), strict=True
+    )
+    rows: list[tuple[int, list[str]]] = []
+    try:
+        for cells in reader:
+            rows.append((reader.line_num, list(map(str.strip, cells))))
+    except csv.Error as error:
+        line = rows[-1][0] + 1 if rows else 1
+        raise BadRoster(
+            f"{path}, line {line}: we cannot read this line ({error}). Perhaps a quotation mark "
+            "opens a cell there and nothing closes it."
+        ) from None
+    header = rows.pop(0)[1] if rows else []
+    return [name.casefold() for name in header], rows
 
 
 def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
     try:
         header, lines = cells_in(path)
-    except (OSError, csv.Error) as error:
-        raise BadRoster(
-            f"We cannot read the table {path}: {getattr(error, 'strerror', error)}."
-        ) from None
+    except OSError as error:
+        raise BadRoster(f"We cannot read the table {path}: {error.strerror}.") from None
     repeated = [name for name, times in Counter(header).items() if times > 1 and name]
     if repeated:
         raise BadRoster(f"{path}: two columns are called {repeated[0]!r}.")
