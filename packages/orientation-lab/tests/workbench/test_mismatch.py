@@ -487,6 +487,7 @@ BAD = {
     "13 numbers": (" ".join(map(str, range(13))), "13 numbers"),
     "no number": ("nan 0 0 1", "'nan'"),
     "something to be worked out": ("0 0 pi/2", "'pi'"),
+    "a fraction": ("1/2 1/2 1/2 1/2", "'1/2'"),
     "text": ("which way", "no numbers: 'which way"),
     "nothing": ("  ", "empty"),
     "no rotation": ("1 0 0\n0 2 0\n0 0 1", "row 2 has length 2"),
