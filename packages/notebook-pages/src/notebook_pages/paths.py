@@ -65,6 +65,7 @@ class Contents(TypedDict):
 
     root: str
     parts: list[Part]
+    chapters: NotRequired[list[Page]]
 
 
 def _book() -> tuple[Path, Registered]:
@@ -160,8 +161,7 @@ def contents() -> Contents:
     """Read ``_toc.yml``, in an exam edition without the pages of worked solutions."""
     table: Contents = yaml.load(Path("_toc.yml").read_text("utf8"), YAML)
     # A short book needs no parts.
-    if "chapters" in table:
-        table["parts"] = [{"caption": "", "chapters": table.pop("chapters")}]
+    table.setdefault("parts", [{"caption": "", "chapters": table.pop("chapters", [])}])
     if exam_edition():
         for part in table["parts"]:
             part["chapters"] = [
