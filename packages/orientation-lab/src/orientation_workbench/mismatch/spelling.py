@@ -51,10 +51,10 @@ SPELLING = {
     # The innermost pair of nested brackets.
     "innermost": r"[\[({]([^\[\](){}]*)[\])}]",
     "not a number": r"(?<![a-z])[-+]?(nan|inf(?:inity)?)(?![a-z])",
-    # What somebody has to work out first. A date such as 12/05/2026 is not a fraction.
+    # Expressions that must be evaluated first. A date such as 12/05/2026 is not a fraction.
     "arithmetic": r"\b(?:m_|np\.|math\.)?pi\b|\bsqrt\s*\(|\u221a|\u03c0"
     r"|(?<![\w/.])\d*\.?\d+\s*/\s*\d*\.?\d+(?![\w/])",
-    # A quaternion as a sum of its parts.
+    # A quaternion as a sum of its components.
     "sum": r"\d\s*[*.]?\s*i\b[^a-z]*\d\s*[*.]?\s*j\b[^a-z]*\d\s*[*.]?\s*k\b",
     "signs of a sum": ((r"\+\s*-\s*(?=[.\d])", "-"), (r"([-+])\s+(?=[.\d])", "$1")),
     "part of a sum": rf"({NUMBER})\s*[*.]?\s*([ijk])\b",
