@@ -1,6 +1,6 @@
 """Self-checking exercises that contain no answers, and the tools that make and grade them.
 
-A student needs ``from coursework import check`` and no more.
+Students need only ``from coursework import check``.
 """
 
 from .checking.check import check, hint, progress, worked_solution

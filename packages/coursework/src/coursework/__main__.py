@@ -1,6 +1,4 @@
-"""The command ``coursework``, for authors and instructors, and for students who update their
-exercises.
-"""
+"""The command ``coursework``, for authors and instructors, and for students' updates."""
 
 import argparse
 import os
@@ -21,14 +19,14 @@ as well as coursework-checks."""
 
 @contextmanager
 def _readers_may_leave() -> Iterator[None]:
-    """Let the reader of what is printed, such as `head`, stop when it has seen enough."""
+    """Let a reader of the output, such as `head`, stop when it has seen enough."""
     try:
         try:
             yield
         finally:
             sys.stdout.flush()
     except BrokenPipeError:
-        # What is left over goes nowhere, or Python would try again as it ends.
+        # Discard what is left, or Python would try to write it again as it exits.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
 
@@ -42,7 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     ]
     parser = argparse.ArgumentParser(
         prog="coursework",
-        usage=None if rooms else _STUDENTS_USAGE,  # which every error about a command shows
+        usage=None if rooms else _STUDENTS_USAGE,  # Every error about a command shows it.
         description="Make, grade and update self-checking exercises.",
         epilog="Run coursework COMMAND --help for the options of a command.",
     )
@@ -86,11 +84,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
         )
         sys.exit(f"coursework {command} needs {needs}")
     except ValueError as error:
-        # A fault of ours in an author's command shows where it is.
+        # A fault of ours in an author's command shows its traceback.
         if type(error) is ValueError and not runs[command].__module__.endswith("grading.commands"):
             raise
         sys.exit(f"coursework {command}: {error}")
-    except OSError as error:  # The reason is enough; a traceback helps nobody here.
+    # The reason is enough; a traceback helps nobody here.
+    except OSError as error:
         where = f": {error.filename}" if error.filename else ""
         sys.exit(f"coursework {command}: {error.strerror or error}{where}")
 

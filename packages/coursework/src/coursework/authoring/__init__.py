@@ -1,3 +1,1 @@
-"""What an author uses: questions from notebooks with solutions,
-their release and their selftest.
-"""
+"""Tools for authors: questions from notebooks with solutions, their release and their self-test."""

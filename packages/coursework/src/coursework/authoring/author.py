@@ -1,7 +1,7 @@
 """Questions as their authors write them, and as we seal them.
 
-In the notebook with the solutions, the cell that checks an answer goes on, between nbgrader's marks
-for hidden tests, with a call of `question`:
+In the notebook with the solutions, the cell that checks an answer continues, between nbgrader's
+marks for hidden tests, with a call of `question`:
 
 .. code-block:: python
 
@@ -65,10 +65,11 @@ REACH = 0.5
 #: coarser than the last share. A seal must not depend on the last bits, which differ between
 #: processors.
 ROUNDED, DOUBLES, ROUNDED_MOST = MP.mpf("1e-5"), MP.mpf("1e-12"), MP.mpf("1e-1")
-#: Where rounding tips from one number to the next: no number of few
-#: digits or small denominator lies there.
+#: The fraction of a step at which rounding tips to the next number. No number with few digits or a
+#: small denominator lies there.
 TIPS = MP.mpf("0.6371")
-#: The most edges of cells near an answer: each adds a locker beyond it, and every combination too.
+#: The most edges of cells near an answer. Each adds a locker beyond it, and so does every
+#: combination.
 MOST_EDGES = 6
 #: The same for students with other numbers, since each cell costs a slow hash at release.
 MOST_EDGES_FOR_OTHERS = 2
@@ -76,7 +77,7 @@ MOST_EDGES_FOR_OTHERS = 2
 PAGES_TOGETHER = 4
 
 
-#: The letter of an axis, and the angle about it.
+#: The letter of an axis, and the angle of the rotation about it.
 Turn = tuple[Any, Any]
 
 
@@ -85,10 +86,9 @@ class AuthorError(ValueError):
 
 
 class Entry(NamedTuple):
-    """What one fingerprint stands for: as a rule one known answer;
-    and one such answer as plain data.
+    """The meaning of one fingerprint: usually one known answer, also as plain data.
 
-    Numbers are known where the fingerprint is shared by several or the answer is the right one.
+    Numbers are stored if several answers share the fingerprint or it is that of the right answer.
     """
 
     answers: list[KnownAnswer]
@@ -104,7 +104,7 @@ class Entry(NamedTuple):
 
 
 class _Known(NamedTuple):
-    """An answer that is known, with all mistakes that lead to it."""
+    """A known answer, with all mistakes that lead to it."""
 
     outcome: str
     notes: list[Note]
@@ -114,9 +114,7 @@ class _Known(NamedTuple):
 
 
 def far_from_last_bits(question: Question, reading: Reading) -> Reading:
-    """An answer with a tolerance, rounded so that what is sealed of
-    it is the same on every processor.
-    """
+    """Round an answer with a tolerance, so that its seals are the same on every processor."""
     if question.tolerance is None or reading.text is not None:
         return reading
     absolute, relative = tolerances(question)
@@ -133,29 +131,28 @@ def far_from_last_bits(question: Question, reading: Reading) -> Reading:
 
 
 class AuthoredQuestion:
-    """A question with everything its author knows of it.
+    """A question with everything that its author knows about it.
 
     Attributes
     ----------
     name : str
     public : Question
-        What a student's computer may know.
+        The part that a student's computer may know.
     answer : object
         The right answer.
     worth : int
     credit : dict
-        Share of the worth for a mistake, by its note.
+        The share of the worth for a mistake, by its note.
     partial : bool
-        Whether an answer in several words earns the share of them that is right, beyond what a
-        guess would earn.
+        Whether an answer in several words earns the share of them that is right, beyond a guess.
     rubric : tuple of str, or dict
-        What a person looks for who reads the answers; with the points that each line is worth.
+        The criteria for a person who marks the answers; with the points of each line.
     fixed : str
         Why the question has one answer for everybody.
     entries : dict
         `Entry` by fingerprint: the right answer and every mistake that differs from it.
     no_mistakes : list of str
-        What the author says of mistakes that give the right answer.
+        The author's words for mistakes that give the right answer.
     near : list
         Fingerprints of answers that agree with an exact one to about three digits.
     """
@@ -202,7 +199,7 @@ class AuthoredQuestion:
         )
         self._settle_points()
         self._demand_turns()
-        # The author's words on a mistake fit the question better than those of the catalogue.
+        # The author's words about a mistake suit the question better than the catalogue's.
         self.mistakes = [
             *(
                 Mistake("authored", {"text": text}, wrong)
@@ -217,7 +214,7 @@ class AuthoredQuestion:
 
     @property
     def number(self) -> int:
-        """That of the variant."""
+        """The number of the variant."""
         return self.public.variant.number if self.public.variant else 0
 
     def to_plain(self, answer: Any) -> Plain:
@@ -227,29 +224,25 @@ class AuthoredQuestion:
         return fingerprint(self.public, self.read(plain))
 
     def read(self, plain: Plain) -> Reading:
-        """An answer that the author knows, as numbers that are the same on every processor."""
+        """Read an answer that the author knows, as numbers that are the same on every processor."""
         return far_from_last_bits(self.public, read(self.public, plain))
 
     def find(self, text: str) -> Locker | None:
-        """Return the entry of a fingerprint, as a locker holds it; or ``None``."""
+        """Return the entry of a fingerprint as a locker, or ``None``."""
         if text in self.entries:
             return Locker(tuple(self.entries[text].answers))
         return Locker() if text in self.near else None
 
     def reply_to(self, plain: Plain) -> Reply:
-        """The reply to an answer, as plain data: the one that a student
-        gets, found without the slow hash.
-        """
+        """Return the reply that a student gets to an answer, found without the slow hash."""
         return compare(self.name, self.public, plain, self.find)
 
     def _settle_points(self) -> None:
-        """Choose the salt, and with it the points: at them each entry
-        takes every sign that it can take.
+        """Choose the salt, and thus the points, so that each entry takes each sign that it can.
 
-        What is asked of a salt is so weak that nearly every answer would be content with nearly
-        every salt: the choice tells nothing of the answer.
+        Nearly every salt satisfies this for nearly every answer, so the choice reveals nothing.
         """
-        # Each variant has its own salt, so that a guess at one is no help with the others.
+        # Each variant has its own salt, so that a guess at one does not help with the others.
         number = self.number
         seed = f"{self.name} variant {number}" if number else self.name
         varying = None
@@ -281,7 +274,7 @@ class AuthoredQuestion:
         )
 
     def _varying(self) -> set[int]:
-        """Which entries of the answer take both signs at some values of the symbols."""
+        """Return the indices of the answer's entries whose sign depends on the symbols."""
         if not self.public.symbols:
             return set()
         readings = (
@@ -303,9 +296,7 @@ class AuthoredQuestion:
             raise AuthorError(f"{self.name}: the product of the `turns` is not the right answer.")
 
     def _demand_notes(self) -> None:
-        """Hints and credit belong to mistakes that the question knows: for
-        another one they would never be given.
-        """
+        """Reject hints and credit for unknown mistakes, which nobody would ever get."""
         notes = dict.fromkeys(mistake.note for mistake in self.mistakes)
         texts = [mistake.details["text"] for mistake in self.mistakes if mistake.note == "authored"]
         for argument, keys, known in (
@@ -362,7 +353,7 @@ class AuthoredQuestion:
         }
 
     def _known(self) -> list[_Known]:
-        """The right answer, and then every other answer that a mistake leads to."""
+        """Return the right answer, then every other answer that a mistake leads to."""
         known, self.no_mistakes = [self._one("correct", [], self.plain)], []
         for mistake in self.mistakes:
             try:
@@ -370,7 +361,8 @@ class AuthoredQuestion:
                     "mistake", [Note(mistake.note, mistake.details)], self.to_plain(mistake.answer)
                 )
             except (Fault, Undecidable, NotPlain):
-                continue  # such an answer is refused for its form, which is a message of its own
+                # The form of such an answer is refused, with a message of its own.
+                continue
             same = next((other for other in known if self._same(one, other)), None)
             if same is None:
                 known.append(one)
@@ -392,7 +384,7 @@ class AuthoredQuestion:
     def _same(self, one: _Known, other: _Known) -> bool:
         if one.reading.text is not None or other.reading.text is not None:
             return one.reading.text == other.reading.text
-        # An answer within the tolerance of the right answer is the right answer.
+        # An answer within the tolerance of the right one counts as right.
         return within(
             self.public, one.numbers, other.numbers, 1 if other.outcome == "correct" else 0.1
         )
@@ -401,7 +393,7 @@ class AuthoredQuestion:
         steps = [
             step
             for note, details in one.notes
-            # An author's hints name one mistake by its words, and all of them by `authored`.
+            # An author's hints name a mistake by its words, or all of them by `authored`.
             for key in dict.fromkeys((str(details["text"]) if note == "authored" else note, note))
             for step in self.hints.get(key, [])
         ]
@@ -410,9 +402,7 @@ class AuthoredQuestion:
         return KnownAnswer(one.outcome, tuple(one.notes), tuple(steps), tuple(numbers))
 
     def names_for_others(self) -> list[str]:
-        """Under what names those who have another variant find that
-        their answer is right for this one.
-        """
+        """Return the names by which students with other variants can find this answer."""
         if self.public.exam or kinds()[self.public.kind].by_a_person:
             return []
         common = replace(self.public, salt=salt_of_all(self.name))
@@ -421,18 +411,17 @@ class AuthoredQuestion:
         return [sealing.name_of(sealing.slow_key(common.salt, text)).hex() for text in texts]
 
     def sealed(self, code: str | None = None, first: Pages | None = None) -> Sealed:
-        """What a student receives of the question, as `Sealed`.
+        """Return what a student receives of the question, as `Sealed`.
 
         Parameters
         ----------
         code : str, optional
-            What opens the worked solution for those who give up.
+            The code that opens the worked solution for students who give up.
         first : Pages, optional
-            The pages of the first variant, `pages` of its question when it was sealed: what
-            stands there is not sealed once more.
+            The pages of the first variant, `pages` of its question when it was sealed, which are
+            not sealed again.
 
-        Of a question of an exam nothing is sealed: what a student receives would
-        be the same with another answer.
+        Nothing of an exam's question is sealed. Students receive the same whatever the answer.
         """
         answer = self.variable or ""
         if self.public.exam:
@@ -455,7 +444,7 @@ class AuthoredQuestion:
         wanted = []
         for text, entry in self.entries.items():
             names = [short_name(*found) for found in entry.notes[:2]]
-            # What the author says of a mistake is not.
+            # The author's own words for a mistake are not in the catalogue.
             known = all(name in catalogue for name in names)
             plain = (
                 len(entry.answers) == 1
@@ -504,10 +493,10 @@ class AuthoredQuestion:
 
 
 def ladder_of(public: Question, authored: Iterable[str] | None, turns: Sequence[Turn]) -> list[str]:
-    """The steps of a ladder: its author's, or where to begin, and what the answer is built of.
+    """Return the steps of a ladder: the author's, or where to begin and how the answer is built.
 
-    No secret locks them, so nothing of the solution is among them: its
-    first sentence is often the answer.
+    No secret protects them, so none come from the solution, whose first sentence is often the
+    answer.
     """
     if authored is not None:
         return list(authored)
@@ -521,16 +510,15 @@ def ladder_of(public: Question, authored: Iterable[str] | None, turns: Sequence[
 
 
 class Pages:
-    """The pages of a question; each has a key of its own, which nobody can
-    make who does not know the answer.
+    """The pages of a question. Each has its own key, which nobody can make without the answer.
 
     Parameters
     ----------
     secret : bytes
-        What keys are made with. It follows from the answer by the slow hash: who guesses at a page
-        has to spend one for each guess, as for a locker.
+        Determines the keys. It follows from the answer by the slow hash, which costs one for each
+        guess at a page, as for a locker.
     first : Pages, optional
-        Those of the first variant of the question, which all variants share.
+        The pages of the first variant of the question, which all variants share.
     """
 
     def __init__(self, secret: bytes, first: Pages | None = None) -> None:
@@ -545,9 +533,7 @@ class Pages:
         ).digest()
 
     def add(self, content: dict[str, Json], solution: bytes | None = None) -> bytes:
-        """Add a page, once; gives its key. The page of the right answer tells
-        where the worked solution stands.
-        """
+        """Add a page once, and return its key. The right answer's page locates the solution."""
         text = json.dumps(content, ensure_ascii=False, sort_keys=True)
         if self.first:
             shared = self.first._key(text)
@@ -558,30 +544,27 @@ class Pages:
         return key
 
     def add_solution(self, text: str, variants: Variant | None) -> bytes:
-        """Add the worked solution, in variants as what differs from words
-        that stand beside the first one.
-        """
+        """Add the worked solution; for variants, as the difference from words beside the first."""
         if self.first and self.first.words:
             place = self.first.places()[self.first.words]
             short = sealing.shorten(text, str(self.first.contents[self.first.words][0]["words"]))
             return self.add({"solution": [place, self.first.words.hex(), short]})
         if variants:
-            # No number: they are what differs, and those of the first
-            # variant are not for everybody.
+            # Leave numbers out. They are what differs, and not everybody may have those of the
+            # first variant.
             self.words = self.add({"words": re.sub(r"\d+", "", text)})
         return self.add({"solution": text})
 
     def places(self) -> dict[bytes, int]:
-        """The place of each page by its key: in an order that tells nothing,
-        after those of the first variant.
-        """
+        """Return each page's place by its key, in a meaningless order after the first variant's."""
         before = self.first.places() if self.first else {}
         start = len(self.first.sealed) if self.first else 0
         return before | {key: place for place, key in enumerate(sorted(self.contents), start=start)}
 
     def seal(self, code: str) -> dict[bytes, int]:
-        """Seal all pages that are not sealed with the first variant; gives the place of each by its
-        key. Which of them are empty follows from the code of the solutions.
+        """Seal all pages but the first variant's, and return the place of each page by its key.
+
+        The code of the solutions determines which pages are empty.
         """
         places = self.places()
         if len(places) >= sealing.NO_PAGE:
@@ -602,8 +585,7 @@ class Pages:
 
 
 def solution_code(notebook: Mapping[str, Any]) -> str:
-    """The code that opens the worked solutions of a notebook: it follows from its
-    source, so only who has that has it.
+    """Return the code that opens a notebook's worked solutions, which only its source determines.
 
     The variants of its questions have the same code.
     """
@@ -614,7 +596,7 @@ def solution_code(notebook: Mapping[str, Any]) -> str:
 
 
 def _varying_in(rows: Sequence[Sequence[Number]]) -> set[int]:
-    """Places of the entries that are above zero in one row and below it in another."""
+    """Return the indices of the entries that are positive in one row and negative in another."""
     return {
         place
         for place in range(len(rows[0]) if rows else 0)
@@ -623,17 +605,13 @@ def _varying_in(rows: Sequence[Sequence[Number]]) -> set[int]:
 
 
 def _replay(results: Iterable[object]) -> Callable[..., object]:
-    """A function that gives prepared results, one for each call: what
-    a mistaken function would return.
-    """
+    """Return a function with a prepared result for each call, like a mistaken function."""
     following = iter(itertools.cycle(results))
     return lambda *arguments: next(following)
 
 
 def to_page(markdown: str, formula: Callable[[str], str] | None = None) -> str:
-    """Markdown of an author as HTML; ``formula`` turns TeX into HTML, which is
-    otherwise left to whoever shows it.
-    """
+    """Convert an author's Markdown to HTML; ``formula`` converts TeX, which otherwise stays."""
     from markdown_it import MarkdownIt
     from mdit_py_plugins.dollarmath import dollarmath_plugin
 
@@ -647,7 +625,7 @@ def to_page(markdown: str, formula: Callable[[str], str] | None = None) -> str:
 
 
 def _demand_arguments(name: str, given: set[str]) -> None:
-    """Refuse an argument that `question` does not have."""
+    """Reject an argument that `question` does not have."""
     known = [
         parameter.name
         for function in (question, AuthoredQuestion.__init__)
@@ -665,7 +643,7 @@ def _demand_arguments(name: str, given: set[str]) -> None:
 def _demand_forms(
     name: str, mistakes: object, hints: Any, after: Any, credit: Any, worth: object
 ) -> None:
-    """Refuse arguments whose form is not the one in the manual."""
+    """Reject arguments whose form is not the one in the manual."""
     for argument, value, example in (
         ("mistakes", mistakes, "{'what the student is told': the_wrong_answer}"),
         ("hints", hints, "{'opposite': ['the first step', 'the second']}"),
@@ -692,7 +670,7 @@ def _demand_forms(
 
 
 def _demand_rubric(name: str, rubric: object, worth: float) -> None:
-    """Refuse a rubric whose lines do not add up to the points of the question."""
+    """Reject a rubric whose lines do not add up to the points of the question."""
     if not isinstance(rubric, dict):
         return
     for line, points in rubric.items():
@@ -710,9 +688,7 @@ def _demand_rubric(name: str, rubric: object, worth: float) -> None:
 
 
 def _demand_tolerance(name: str, tolerance: object, relative: object) -> None:
-    """What an answer may be off by is more than nothing: the last
-    digits differ from machine to machine.
-    """
+    """Reject a tolerance of zero, since the last digits differ from machine to machine."""
     if tolerance is not None and (not _is_number(tolerance) or tolerance <= 0):
         also = (
             " With `relative`, it is the tolerance for an answer of zero."
@@ -836,7 +812,7 @@ def question(
     except Misread as error:
         raise AuthorError(str(error)) from None
     for symbol, (low, high) in public.symbols.items():
-        if not abs(high - low) <= WIDEST:  # of what is no number, too
+        if not abs(high - low) <= WIDEST:  # This form also rejects NaN.
             raise AuthorError(
                 f"{name}: {symbol!r} is tried from {low:g} to {high:g}, but a range must be at "
                 f"most {WIDEST} wide. It need not be realistic: (0.5, 3) will do for any length, "

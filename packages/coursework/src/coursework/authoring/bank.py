@@ -40,19 +40,19 @@ if TYPE_CHECKING:
     from nbformat import NotebookNode
 
 OPPOSITES = "an answer and its opposite are right, but Moodle marks each number separately"
-#: The line in which students write their answer.
+#: Pictures, and the line in which students write their answer.
 PICTURE = re.compile(r"!\[([^\]]*)\]\([^)]*\)|<img[^>]*alt=\"([^\"]*)\"[^>]*>")
 BLANK = re.compile(r"^.*# your answer\n?", re.M)
-#: The note of an answer with one wrong entry, whatever that is: it has no values of its own.
+#: The note of an answer with one wrong entry, whatever its value, so it has no values of its own.
 ONE_WRONG = "one wrong"
 
 
 class NotExported(ValueError):
-    """No other system can judge the answers of a question; the message says why."""
+    """An error for a question that no other system can judge; the message gives the reason."""
 
 
 def item_of(question: AuthoredQuestion, above: str, notebook: NotebookNode) -> Item:
-    """One variant of a question, below what its notebook has ``above`` it.
+    """Return one variant of a question, below the text that its notebook has ``above`` it.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def item_of(question: AuthoredQuestion, above: str, notebook: NotebookNode) -> I
         question.solution,
         _columns(question.plain["value"], len(right[0])),
         options,
-        # The third digit of a tolerance says nothing, and its rounding would be read.
+        # Further digits of a tolerance mean nothing, and students would see its rounding.
         ()
         if kind.text
         else tuple(float(f"{absolute + relative * abs(float(n)):.3g}") for n in right[0]),
@@ -101,7 +101,7 @@ def item_of(question: AuthoredQuestion, above: str, notebook: NotebookNode) -> I
 
 
 def _given(question: AuthoredQuestion, notebook: NotebookNode) -> str:
-    """What students of the notebook get in the cell of their answer, with its numbers."""
+    """Return the contents of the answer's cell as students get it, with its numbers."""
     owners = {variable: name for name, variable in checked_names(notebook).items()}
     drawn, code = "", ""
     for cell in notebook.cells:
@@ -127,7 +127,7 @@ def _values(question: AuthoredQuestion, plain: Plain) -> tuple[str, ...]:
 
 
 def _number(question: AuthoredQuestion, number: Number) -> str:
-    """A number with more digits than the tolerance asks for, and no trace of rounding."""
+    """Return a number with more digits than the tolerance needs, and no trace of rounding."""
     digits = 3 - int(MP.floor(MP.log10(tolerances(question.public)[0])))
     return f"{round(float(number), digits) + 0.0:.12g}"
 
@@ -143,7 +143,7 @@ def _columns(value: Value, places: int) -> int:
 def _exported(
     path: Path, course: Course, names: Collection[str]
 ) -> tuple[dict[str, list[Item]], dict[str, str]]:
-    """The items of each question of a notebook; or why it cannot be exported."""
+    """Return the items of each question of a notebook, and why others cannot be exported."""
     if path.stem == CHAPTERS:
         return {}, dict.fromkeys(names, "its text is in a chapter")
     items, left = dict[str, list[Item]](), dict[str, str]()
@@ -165,12 +165,12 @@ def _exported(
 
 
 def _chosen(course: Course, wanted: Collection[str]) -> Iterator[tuple[Path, list[str]]]:
-    """The notebooks with the questions of each that are wanted, by their names or that of theirs.
+    """Iterate over the notebooks, each with its wanted questions, given by their or its name.
 
     Raises
     ------
     AuthorError
-        There is no question, and no notebook, of a name.
+        No question or notebook has one of the names.
     """
     asked = {path: list(names_asked(path)) for path in notebooks_in(course.sources)}
     known = {*(path.stem for path in asked), *(name for names in asked.values() for name in names)}
@@ -189,7 +189,7 @@ def _chosen(course: Course, wanted: Collection[str]) -> Iterator[tuple[Path, lis
 def bank(
     course: Course, out: str | Path, format: str, wanted: Collection[str] = ()
 ) -> tuple[dict[str, list[Item]], list[str]]:
-    """Write a course's questions for another system, and beside them a list of those left out.
+    """Write a course's questions for another system, and return those written and those left out.
 
     Parameters
     ----------
@@ -198,7 +198,7 @@ def bank(
     format : str
         ``'moodle'`` or ``'qti'``.
     wanted : collection of str
-        Questions or notebooks; all of them if there is none.
+        Questions or notebooks; all of them if empty.
 
     Returns
     -------

@@ -1,9 +1,9 @@
 """Count the answers that a question allows, if a script could try them all.
 
-A check that needs no server lets a program try answers, at about a hundredth of a second a
-try. Where an answer is one of a few words, an order, or a handful of small whole numbers, trying
-them all finds it. This counts no more than that, so it understates what a script can build: most
-answers are formulas, and a script that knows the subject's formulas finds many of those too.
+A check that needs no server lets a program try answers, each in about a hundredth of a second. If
+an answer is one of a few words, an order, or a few small whole numbers, trying all of them finds
+it. We count only those, which understates what a script can do: most answers are formulas, and a
+script that knows the subject's formulas finds many of those, too.
 """
 
 import contextlib
@@ -20,12 +20,13 @@ from .author import AuthoredQuestion
 from .course import Course
 from .source import CHAPTERS, notebooks_in, processes_for, read_source
 
-#: More possibilities than this are not closed: trying them takes more than a quarter of an hour.
+#: Answers with more possibilities than this are not closed, since trying them takes more than a
+#: quarter of an hour.
 MOST = 2**16
 
 
 class Asked(NamedTuple):
-    """A question: its points, its variants, its possible answers, and why it is fixed."""
+    """A question: its points, variants and possible answers, and why it has only one variant."""
 
     worth: float
     variants: int
@@ -34,9 +35,9 @@ class Asked(NamedTuple):
 
 
 def possible_answers(question: AuthoredQuestion) -> int | None:
-    """How many answers a question allows at most; ``None`` where they are not closed.
+    """Return how many answers a question allows at most; ``None`` if they are not closed.
 
-    Whole numbers count as closed where all entries are: each may be anything up to the largest.
+    Answers of whole numbers only count as closed, where each may be anything up to the largest.
     """
     public = question.public
     if public.exam or kinds()[public.kind].by_a_person:
@@ -85,7 +86,7 @@ def _asked_in(path: Path, course: Course) -> dict[str, Asked]:
 
 
 def counted(course: Course, only: Collection[str] = ()) -> list[str]:
-    """Report the points that a script finds in some notebooks, and those that a copy earns.
+    """Report the points that a script can find in some notebooks, and those that a copy earns.
 
     Returns
     -------

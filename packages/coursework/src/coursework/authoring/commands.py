@@ -1,6 +1,4 @@
-"""The commands of authors: ``coursework new``, ``release``, ``publish``, ``try``, ``bank``,
-``selftest`` and ``wheels``.
-"""
+"""The commands of authors: ``new``, ``release``, ``publish``, ``try``, ``bank`` and others."""
 
 from __future__ import annotations
 
@@ -16,12 +14,12 @@ if TYPE_CHECKING:
 
 
 def argument(*names: str, **options: Any) -> tuple[tuple[str, ...], dict[str, Any]]:
-    """One argument of a command, as argparse takes it."""
+    """Return one argument of a command, as argparse takes it."""
     return names, options
 
 
 def notebook_name(typed: str) -> str:
-    """The name of a notebook or a question, for which a shell may have completed a path."""
+    """Return the name of a notebook or a question, for which a shell may have completed a path."""
     return Path(typed).stem if typed.endswith(".ipynb") else typed
 
 
@@ -192,7 +190,7 @@ def _writable(page: str | Path) -> str | Path:
     """Return the path of a page if it can be written, so that an error comes before the work."""
     place = Path(page).absolute()
     there = next(path for path in (place, *place.parents) if path.exists())
-    # A page that is there already has to be a file, and another one has to be in a folder.
+    # An existing page must be a file, and a new one must be in a folder.
     if there.is_dir() == (there == place) or not os.access(there, os.W_OK):
         raise OSError(f"We cannot write the page {str(page)!r}. Give another path with --page.")
     return page

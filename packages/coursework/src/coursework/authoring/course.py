@@ -1,4 +1,4 @@
-"""A course: where its notebooks with solutions are, and where what is made of them goes."""
+"""A course: the locations of its notebooks with solutions and of what is made from them."""
 
 import re
 import tomllib
@@ -17,26 +17,25 @@ class Course(NamedTuple):
     ----------
     title : str
     sources : Path
-        The folder of the notebooks with solutions. Nothing but releasing and grading needs it.
+        The folder of the notebooks with solutions. Only releasing and grading need it.
     exercises, sealed : Path
         The folders of the notebooks that students get and of the sealed questions.
     archive : Path
-        What students download.
+        The archive that students download.
     package : str
-        ``module:function`` that builds the wheels for students into a folder, that of coursework
-        among them, and gives their paths, for a course with a package of its own; empty for one
-        that needs nothing but coursework.
+        The ``module:function`` that builds the wheels for students, including coursework's, into a
+        folder and returns their paths, for a course with its own package; empty for one that needs
+        only coursework.
     edition : str
-        Each edition draws the variants of questions afresh: an exam, say, or another year.
+        Each edition, such as an exam or another year, draws the variants of questions anew.
     chapter, solution : str
-        Addresses that the graders' feedback leads to, with ``{notebook}`` and ``{question}`` in
-        them: where one reads on, and the worked solution, named here once it is released.
+        Addresses for the graders' feedback, with ``{notebook}`` and ``{question}``: where to read
+        on, and the worked solution, given here once it is released.
     variants : str
-        How variants are given to students: ``"by name"``, so that one that is taken out moves only
-        those who had it, or by number if nothing is said. Say it before a term begins: students'
-        numbers change with it.
+        How students get variants: ``"by name"``, so that removing one affects only those who had
+        it, or by number if empty. Set it before a term begins, since it changes students' numbers.
     roster : bool
-        Whether the course has a list of its students: then each notebook asks for the student's ID.
+        Whether the course has a roster. Each notebook then asks for the student's ID.
     """
 
     root: Path
@@ -65,12 +64,12 @@ DEFAULTS = {
 
 
 def find_course(start: str | Path = ".") -> Course:
-    """The course of a folder: that of the nearest ``course.toml``, there or above.
+    """Return the course of a folder, that of the nearest ``course.toml`` there or above.
 
     Raises
     ------
     AuthorError
-        There is none, or it is not understood.
+        There is none, or it is invalid.
     """
     course = course_around(start)
     if course is None:
@@ -82,7 +81,7 @@ def find_course(start: str | Path = ".") -> Course:
 
 
 def course_around(start: str | Path) -> Course | None:
-    """The course that a folder belongs to, or ``None``."""
+    """Return the course that a folder belongs to, or ``None``."""
     first = Path(start).resolve()
     found = next(
         (folder / FILE for folder in (first, *first.parents) if (folder / FILE).is_file()), None
@@ -91,13 +90,13 @@ def course_around(start: str | Path) -> Course | None:
 
 
 def gives_by_name(folder: str | Path) -> bool:
-    """Whether the course of a folder gives variants by their names."""
+    """Check whether the course of a folder assigns variants by their names."""
     course = course_around(folder)
     return course is not None and course.variants == BY_NAME
 
 
 def links_of(folder: str | Path) -> dict[str, str]:
-    """The addresses that the course of a folder names, by what they lead to."""
+    """Return the addresses in the course of a folder, by their purpose."""
     course = course_around(folder)
     return {
         name: address

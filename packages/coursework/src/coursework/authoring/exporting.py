@@ -1,8 +1,8 @@
-"""Questions in the formats of other systems: Moodle XML, and a package of QTI 2.2.
+"""Questions in the formats of other systems: Moodle XML, and a QTI 2.2 package.
 
-Moodle gets a category for each question, and in it a question for each variant. An answer of
-several places becomes a cloze question, whose places Moodle marks one by one. QTI gets an item for
-each variant, which judges the whole answer, and a test that draws one variant of each question.
+Moodle gets a category for each question, with a question for each variant. An answer with several
+entries becomes a cloze question, whose entries Moodle marks one by one. QTI gets an item for each
+variant, which judges the whole answer, and a test that draws one variant of each question.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from ..checking.mistakes import GENERAL
 from ..checking.reply import mathml, to_html
 from .author import to_page
 
-#: A picture within a page, as authors' figures are held.
+#: A picture within a page, as authors' figures are stored.
 EMBEDDED = re.compile(r'(?<=src=")data:image/(svg|png|jpe?g|gif)[^,"]*?(;base64)?,([^"]+)')
 #: Elements without content, which XML closes.
 VOID = re.compile(r"<(img|br|hr)\b([^>]*?)/?>")
-#: What would be a place of a cloze question, in a text.
+#: Text that would be an entry of a cloze question.
 CLOZE = re.compile(r"\{(?=\d*:)")
-#: What has a meaning in the answers of a cloze question, as the importer decodes it.
+#: Characters with a meaning in the answers of a cloze question, as the importer decodes them.
 SPECIAL = {ord(sign): f"&#{ord(sign)};" for sign in "{}~#=%"}
-#: More replies than these to one place nobody reads.
+#: The most replies to one entry that anybody would read.
 MOST_REPLIES = 2
-#: Moodle compares one place at a time, and a reply is to a whole answer.
+#: Moodle compares one entry at a time, but a reply is to a whole answer.
 PERHAPS = Markup("<p>If your other entries show the same mistake:</p>")
 ENVIRONMENT = Environment(
     loader=PackageLoader("coursework.authoring", "templates"),
@@ -65,18 +65,18 @@ class Item(NamedTuple):
     ----------
     name : str
     number : int
-        That of the variant.
+        The number of the variant.
     worth : float
     text, solution : str
-        As Markdown, with pictures inside.
+        As Markdown with embedded pictures.
     columns : int
-        How many places stand in a row.
+        The number of entries in a row.
     options : tuple of str
-        The words to choose from, if the answer is some of them.
+        The words to choose from, if the answer consists of them.
     tolerances : tuple of float
-        One for each number of the answer; none if it consists of words.
+        One for each number of the answer; empty if it consists of words.
     right : tuple of tuples of str
-        The right answer; and its opposite, where a question accepts both.
+        The right answer, and its opposite if the question accepts both.
     wrong : list of Wrong
     """
 
@@ -93,7 +93,7 @@ class Item(NamedTuple):
 
     @property
     def identifier(self) -> str:
-        """A name that XML takes as an identifier."""
+        """A name that is a valid identifier in XML."""
         return re.sub(r"[^A-Za-z0-9_-]", ".", f"Q-{self.name}") + f".{self.number}"
 
     @property
@@ -105,14 +105,14 @@ class Item(NamedTuple):
         return len(self.right[0])
 
     def same(self, place: int, first: str, second: str) -> bool:
-        """Whether two values are one answer in a place."""
+        """Check whether two values of an entry are the same answer."""
         if not self.tolerances:
             return first == second
         return abs(float(first) - float(second)) <= self.tolerances[place]
 
 
 class Page(Markup):
-    """HTML that is XML as well, whose pictures are files beside it."""
+    """HTML that is also XML, with pictures as separate files."""
 
     files: dict[str, bytes]
 
@@ -134,7 +134,7 @@ class Page(Markup):
 
 
 class Answer(NamedTuple):
-    """A value in one place, its share of the points of the place, and the replies to it."""
+    """A value of one entry, its share of the entry's points, and the replies to it."""
 
     value: str
     share: float
@@ -151,20 +151,22 @@ class Answer(NamedTuple):
 
 
 def in_moodle(tex: str) -> str:
-    """A formula for Moodle's filter; its importer takes the backslash from a brace in a reply."""
+    """Return a formula for Moodle's filter. The importer drops the backslash before a brace."""
     tex = tex.replace(r"\{", r"\lbrace ").replace(r"\}", r"\rbrace ")
     return html.escape(rf"\({tex}\)", quote=False)
 
 
 def answers(item: Item, place: int) -> list[Answer]:
-    """What is known of a place, the right answer first; of words, all in the order of the choice.
+    """Return an entry's known answers, the right one first; for words, all in the given order.
 
-    Moodle takes the first answer that fits, so the mistakes that earn most come before the others.
+    Moodle takes the first answer that matches, so the mistakes that earn most come before the
+    others.
     """
     known = [Answer(item.right[0][place], 1, [])]
     for wrong in sorted(item.wrong, key=lambda wrong: -wrong.share):
         if wrong.note in GENERAL and item.places > 1:
-            continue  # twice as much in one place says nothing of the others
+            # A mistake such as a factor of two in one entry says nothing about the others.
+            continue
         value = wrong.values[place]
         same = next((one for one in known if item.same(place, one.value, value)), None)
         if same is None:
@@ -176,10 +178,10 @@ def answers(item: Item, place: int) -> list[Answer]:
 
 
 def cloze(kind: str, item: Item, place: int) -> Markup:
-    """One place of a cloze question; the importer decodes its answers and replies once more."""
+    """Return one entry of a cloze question, whose contents the importer decodes again."""
 
     def plain(text: str) -> str:
-        # Markup would escape what it is to put in place of a sign.
+        # Convert to a plain string, since Markup would escape the replacements.
         return html.escape(str(text)).translate(SPECIAL)
 
     allowed = f":{item.tolerances[place]}" if item.tolerances else ""
@@ -192,7 +194,7 @@ def cloze(kind: str, item: Item, place: int) -> Markup:
 
 
 def moodle(title: str, questions: Mapping[str, Iterable[Item]]) -> bytes:
-    """The file that Moodle imports."""
+    """Return the file that Moodle imports."""
 
     def page(markdown: str) -> Page:
         return Page.of(CLOZE.sub("&#123;", to_page(markdown, in_moodle)), "@@PLUGINFILE@@")
@@ -204,7 +206,7 @@ def moodle(title: str, questions: Mapping[str, Iterable[Item]]) -> bytes:
 
 
 def qti(title: str, questions: Mapping[str, Iterable[Item]]) -> bytes:
-    """The package."""
+    """Return the QTI package."""
     contents, files = dict[str, bytes](), dict[str, list[str]]()
 
     def add(place: str, template: str, **about: object) -> None:
@@ -226,6 +228,6 @@ def qti(title: str, questions: Mapping[str, Iterable[Item]]) -> bytes:
     package = io.BytesIO()
     with zipfile.ZipFile(package, "w") as archive:
         for place, content in contents.items():
-            # With the same time, the same bank is the same file.
+            # With a fixed time, the same bank gives the same file.
             archive.writestr(zipfile.ZipInfo(place), content, zipfile.ZIP_DEFLATED)
     return package.getvalue()

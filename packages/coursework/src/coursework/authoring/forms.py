@@ -1,6 +1,4 @@
-"""The same answer in other forms, to try checks with: what students
-write is rarely what the author wrote.
-"""
+"""Equivalent forms of an answer for testing checks, since students rarely write the author's."""
 
 import functools
 import itertools
@@ -19,7 +17,7 @@ from ..checking.units import BASE, unit
 
 #: An answer as authors and students write it: an expression, matrix, list, string or function.
 Answer: TypeAlias = Any
-#: Puts entries into the shape of an answer.
+#: A function that puts entries into the shape of an answer.
 Put: TypeAlias = Callable[[Iterable[Answer]], Answer]
 Change: TypeAlias = Callable[[sympy.Expr], Answer]
 #: The name of a form, and an answer in it.
@@ -45,7 +43,7 @@ COSINES = {
 
 
 def _rewrite(expression: sympy.Expr, sines: Change, cosines: Change) -> sympy.Expr:
-    """An expression with each sine and cosine written in another way."""
+    """Return an expression with each sine and cosine written in another way."""
     if isinstance(expression, sin):
         return sines(_rewrite(expression.args[0], sines, cosines))
     if isinstance(expression, cos):
@@ -56,7 +54,7 @@ def _rewrite(expression: sympy.Expr, sines: Change, cosines: Change) -> sympy.Ex
 
 
 def unknowns(entries: Iterable[Answer]) -> list[sympy.Expr]:
-    """The symbols and functions of time in some expressions."""
+    """Return the symbols and functions of time in some expressions."""
     free: set[sympy.Expr] = set()
     for entry in map(sympy.sympify, entries):
         functions = entry.atoms(AppliedUndef)
@@ -66,9 +64,7 @@ def unknowns(entries: Iterable[Answer]) -> list[sympy.Expr]:
 
 
 def flat(answer: Answer) -> tuple[list[Answer], Put]:
-    """The entries of a matrix or a nested list, and a function that
-    puts entries back into that shape.
-    """
+    """Return a matrix's or nested list's entries, and a function that restores the shape."""
     if isinstance(answer, sympy.MatrixBase):
         return list(answer.flat()), lambda entries: sympy.Matrix(*answer.shape, list(entries))
     if not isinstance(answer, sympy.Basic) and hasattr(answer, "tolist"):
@@ -89,7 +85,7 @@ def flat(answer: Answer) -> tuple[list[Answer], Put]:
 
 
 def equivalent_forms(public: Question, answer: Answer) -> list[Form]:
-    """Give the same answer in several forms, as pairs (name of the form, answer)."""
+    """Return the same answer in several forms, as pairs (name of the form, answer)."""
     kind, more = public.kind, kinds()[public.kind].forms
     forms = _common_forms(public, kind, answer)
     return [*forms, *more(public, answer)] if more else forms
@@ -226,7 +222,7 @@ def _forms_of_numbers(
 
 
 def _digits(public: Question) -> int | None:
-    """How many decimals are enough for the tolerance of a question."""
+    """Return how many decimals are enough for the tolerance of a question."""
     tolerance = public.tolerance
     if tolerance is None:
         return None
@@ -237,7 +233,7 @@ def _digits(public: Question) -> int | None:
 
 
 def another_answer(public: Question, answer: Answer, chance: random.Random | None = None) -> Answer:
-    """An answer of the right form that is neither right nor a mistake of the catalogue."""
+    """Return an answer of the right form that is neither right nor a mistake of the catalogue."""
     chance = chance or random.Random(1)
     kind = public.kind
     if kind == "function":

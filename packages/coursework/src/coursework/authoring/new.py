@@ -142,7 +142,7 @@ def new(folder: str | Path) -> list[str]:
     Raises
     ------
     AuthorError
-        There is something at that place already.
+        Something exists at that path already.
     """
     import nbformat
 
@@ -153,7 +153,7 @@ def new(folder: str | Path) -> list[str]:
     for name, text in FILES.items():
         place = folder / name
         place.parent.mkdir(parents=True, exist_ok=True)
-        # Only the first letter changes: names and German nouns keep their capitals.
+        # Change only the first letter, since names and German nouns keep their capitals.
         place.write_text(text.format(title=words[:1].upper() + words[1:]), "utf8")
     cells = [
         nbformat.v4.new_markdown_cell(text)

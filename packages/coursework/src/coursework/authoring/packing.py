@@ -17,10 +17,10 @@ import coursework
 from ..checking.update import MANIFEST, manifest
 from .course import Course, find_course
 
-#: Every file of an archive carries this time, so that the same contents are the same bytes.
+#: The time of every file in an archive, so that the same contents give the same bytes.
 TIME = (2026, 1, 1, 0, 0, 0)
-#: What each distribution holds of coursework, what it needs, and its one line. Students get neither
-#: the author's tools nor the grader.
+#: The files of coursework in each distribution, its dependencies and its summary. Students get
+#: neither the author's tools nor the grader.
 DISTRIBUTIONS = {
     "coursework-checks": (
         ("*.py", "py.typed", "checking/*.py"),
@@ -37,15 +37,15 @@ DISTRIBUTIONS = {
             "latex2mathml",
             "markdown-it-py",
             "markupsafe",
-            "matplotlib",  # what students plot with
+            "matplotlib",  # for students' plots
             "mdit-py-plugins",
             "nbclient",
             "nbformat",
             "numpy",
             "packaging",
             "pillow",
-            "pyyaml",  # Gradescope's table of submissions
-            "tornado",  # the page to judge in
+            "pyyaml",  # for Gradescope's table of submissions
+            "tornado",  # for the page to mark in
         ),
         "Self-checking exercises in notebooks that contain no answers: what authors and "
         "instructors need",
@@ -113,7 +113,7 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
     ----------
     course : Course
     target : path, optional
-        Another place than the course names.
+        Another path than the course's.
     """
     target = Path(target or course.archive)
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -147,9 +147,7 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
 
 
 def archive_of(folder: str | Path, target: str | Path) -> Path:
-    """Make the archive for students of the course in a folder: for what
-    makes pages of a course to offer.
-    """
+    """Make the archive for the course in a folder, for code that builds a course's pages."""
     return archive(find_course(folder), target)
 
 
@@ -160,28 +158,27 @@ def dated(
     paths: Sequence[str] = (".",),
     files: Sequence[Path] = (),
 ) -> str:
-    """The version of a package that is built from its sources: as it is stated, or
-    ``1.2.0.dev20261122093000``.
+    """Return the version of a package built from its sources, such as ``1.2.0.dev20261122093000``.
 
-    pip replaces an installed package only by one of another version. So the stated version is for
-    the sources of its tag alone. Before the tag, the version is the stated one still in
-    development, with the time in UTC when the sources were last changed: committed or, where
-    something is not committed or there is no repository, written. Sources changed after the tag are
-    in development of the next version, so that versions only ever rise.
+    pip replaces an installed package only by one of another version. So only the sources at the tag
+    get the stated version itself. Before the tag, the version is the stated one in development,
+    with the time in UTC when the sources were last changed: committed or, if something is not
+    committed or there is no repository, written. Sources changed after the tag are in development
+    of the next version, so that versions only ever increase.
 
     Parameters
     ----------
     stated, tag : str
     folder : path
-        In the repository, as a rule.
+        Usually in the repository.
     paths : sequence of str
-        What git is asked about: the sources, as patterns of paths below the folder.
+        The sources for git, as patterns of paths below the folder.
     files : sequence of Path
-        The sources, where there is no repository.
+        The sources, if there is no repository.
     """
 
     def git(*arguments: str) -> str:
-        """Return git's answer, or nothing without git or a repository that it can read."""
+        """Return git's answer, or an empty string without git or a repository that it can read."""
         if not shutil.which("git"):
             return ""
         done = subprocess.run(
@@ -200,14 +197,14 @@ def dated(
                 return stated
             stated = next_version(stated)
         files = unknown + named("diff", "--name-only", "--relative", "HEAD")
-    # The folder of a deleted file holds the time of the deletion.
+    # The folder of a deleted file has the time of the deletion.
     written = [(path if path.exists() else path.parent).stat().st_mtime for path in files]
     latest = datetime.fromtimestamp(max([int(committed or 0), *written]), UTC)
     return f"{stated}.dev{latest:%Y%m%d%H%M%S}"
 
 
 def next_version(stated: str) -> str:
-    """The version that follows when only a mistake is corrected.
+    """Return the version that follows when only a mistake is corrected.
 
     >>> next_version("1.0.0")
     '1.0.1'
@@ -217,9 +214,7 @@ def next_version(stated: str) -> str:
 
 
 def _own_version(root: Path) -> str:
-    """The version of this package; where it was installed from a wheel,
-    that is the version of the wheel.
-    """
+    """Return the version of this package, or of the wheel from which it was installed."""
     tracked = (
         shutil.which("git")
         and not subprocess.run(
@@ -231,9 +226,7 @@ def _own_version(root: Path) -> str:
 
 
 def wheel(name: str, folder: str | Path) -> Path:
-    """Build one of `DISTRIBUTIONS` out of the coursework that is
-    installed here, and give its file.
-    """
+    """Build one of `DISTRIBUTIONS` from the installed coursework, and return its file."""
     patterns, needs, summary = DISTRIBUTIONS[name]
     root = Path(coursework.__file__).parent
     version = _own_version(root)
@@ -298,7 +291,7 @@ def _digest(content: bytes) -> str:
 
 
 def write_zip(target: Path, files: Mapping[str, bytes]) -> Path:
-    """Write contents by name into a zip, always the same way."""
+    """Write contents by name to a zip file; the same contents give the same bytes."""
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as box:
         for name in sorted(files):
             entry = zipfile.ZipInfo(name, TIME)

@@ -1,15 +1,16 @@
-"""``coursework publish``: a site of a course, made by a package that makes pages from notebooks.
+"""The command ``publish``: a course's site, by a package that makes pages from notebooks.
 
-Such a package offers itself by an entry point, and gets nothing but files: notebooks, wheels, an
-archive. So neither needs to know the other:
+Such a package registers itself by an entry point and receives only files: notebooks, wheels and an
+archive. Neither package thus needs to know the other:
 
 .. code-block:: toml
 
-    [project.entry-points."coursework.pages"] name = "module:function"
+    [project.entry-points."coursework.pages"]
+    name = "module:function"
 
 ``function(parts, workshop, site)`` makes the folder ``site``, and may work in the folder
-``workshop``. ``parts`` is what `parts_of` describes, or a later format of it, which it must
-refuse.
+``workshop``. ``parts`` is the dictionary that `parts_of` returns. The function must refuse formats
+that it does not know.
 """
 
 import re
@@ -27,25 +28,25 @@ from .course import Course
 from .packing import archive, dated, wheel, write_wheel
 
 GROUP = "coursework.pages"
-#: Of what is handed to whoever makes the pages.
+#: The version of the format of `Parts`.
 FORMAT = 1
 
 
 class Parts(TypedDict):
-    """What whoever makes the pages is given.
+    """The input of a function that makes the pages.
 
     Attributes
     ----------
     format : int
     title : str
     notebooks : list of Path
-        The files that students get, in their order.
+        The files that students get, in order.
     archive : Path
-        The zip with all of them.
+        The zip file with all of them.
     wheels : list of Path
-        The files of the packages that they import, each after those that it needs.
+        The packages that they import, each after those that it needs.
     plugin : str
-        The module among them that holds the sealed questions; empty where the course has a package
+        The module among them that contains the sealed questions; empty if the course has a package
         of its own.
     """
 
@@ -64,7 +65,7 @@ def publish(course: Course, site: str | Path, room: bool = False) -> Path:
     ----------
     course : Course
     site : path
-        The folder to make; one that holds something else than an earlier site is left alone.
+        The folder to make. A folder with anything but an earlier site is left alone.
     room : bool
         Also fetch all wheels that the exercises need, for a room without a network.
 
@@ -76,7 +77,7 @@ def publish(course: Course, site: str | Path, room: bool = False) -> Path:
     Raises
     ------
     AuthorError
-        Nothing that makes pages is installed, or it failed, or the course has no exercises.
+        No package that makes pages is installed, or it failed, or the course has no exercises.
     """
     site = Path(site).resolve()
     make = _maker()
@@ -119,9 +120,7 @@ def parts_of(course: Course, folder: str | Path) -> Parts:
 
 
 def questions_wheel(course: Course, module: str, folder: str | Path) -> Path:
-    """The sealed questions of a course as a package that ``check``
-    finds wherever it is installed.
-    """
+    """Build a package of the course's sealed questions, which ``check`` finds when installed."""
     sealed = sorted(course.sealed.rglob("*.json"))
     version = dated("1.0", f"{module}-1.0", course.sealed, files=sealed)
     return write_wheel(

@@ -1,10 +1,8 @@
-"""From the notebooks with the solutions to the exercises that students get,
-and the questions sealed for them.
+"""Release: from notebooks with solutions to students' exercises and sealed questions.
 
-The cells of each source are run, so that the right answers are what the solutions compute, and two
-things are made of it: the exercise notebook with blanks, and the file of sealed questions. The same
-sources give the same bytes. `coursework.authoring.packing` makes the archive that students
-download.
+We run the cells of each source, so that the right answers are those that the solutions compute, and
+make two files: the exercise notebook with blanks, and the sealed questions. The same sources give
+the same bytes. `coursework.authoring.packing` makes the archive that students download.
 """
 
 from __future__ import annotations
@@ -50,16 +48,16 @@ from .source import (
 )
 from .variation import drawn_in
 
-#: The lockers of a question without variants are so many, or twice as many, and so on.
+#: A question without variants has a multiple of this many lockers.
 TOGETHER = 8
-#: The line that asks students for their ID, and what it is where no course is held with a roster.
+#: The line that asks students for their ID, and its replacement in a course without a roster.
 ASKS_WHO = re.compile(r"""^student\((?:''|"")\).*$""", re.M)
 LEFT_OPEN = f"# student({PLACEHOLDER!r})  # if your course gave you one"
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
 
 class AboutAnswer(NamedTuple):
-    """What the variants of a question are compared by, and the names under which others find it."""
+    """An answer to compare variants by, and the names under which other students find it."""
 
     answer: str
     names: list[str]
@@ -77,13 +75,13 @@ class Made(NamedTuple):
     ----------
     name : str
     variants : int
-        How many there are.
+        The number of variants.
     pages : dict of Pages
-        Those that its variants share, by question.
+        The pages that its variants share, by question.
     code : str
-        Of the worked solutions.
+        The code of the worked solutions.
     answers : dict of AboutAnswer
-        By question with variants.
+        The answers, by question with variants.
     after : dict of list of str
         The questions that each gives hints for.
     """
@@ -100,9 +98,7 @@ class Made(NamedTuple):
 
 
 def shows_variants(cells: Sequence[NotebookNode], number: int) -> bool:
-    """Whether a cell is the text of a question with variants, which
-    students are shown by the cell before.
-    """
+    """Check whether a cell is the text of a question with variants, which the cell before shows."""
     return (
         number > 0
         and cells[number].cell_type == "markdown"
@@ -111,9 +107,9 @@ def shows_variants(cells: Sequence[NotebookNode], number: int) -> bool:
 
 
 def exercise_notebook(source: Source, roster: bool = False) -> NotebookNode:
-    """The notebook that students get: no solution, no hidden test, and no code of a figure.
+    """Return the students' notebook, without solutions, hidden tests or the code of figures.
 
-    It asks for the student's ID where the course has a ``roster``.
+    It asks for the student's ID if the course has a ``roster``.
     """
     checked = checked_names(source.notebook)
     owners = {variable: name for name, variable in checked.items()}
@@ -165,7 +161,7 @@ def _identifier(name: str) -> str:
 def _nbgrader(
     cell: NotebookNode, identifier: str, solution: bool = False, points: float | None = None
 ) -> dict[str, Any]:
-    """Metadata of nbgrader's schema 3, as its own release step writes it."""
+    """Return metadata of nbgrader's schema 3, as its own release step writes it."""
     about = {
         "schema_version": 3,
         "grade": points is not None,
@@ -182,7 +178,7 @@ def _nbgrader(
 
 
 def _checksum(cell: NotebookNode, about: Mapping[str, Any]) -> str:
-    # As nbgrader.utils.compute_checksum; a test compares the two.
+    # This follows nbgrader.utils.compute_checksum; a test compares the two.
     parts = [
         cell.source,
         cell.cell_type,
@@ -198,7 +194,7 @@ def _checksum(cell: NotebookNode, about: Mapping[str, Any]) -> str:
 
 
 def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:
-    """Run an exercise notebook, blanks and all, and keep what it shows."""
+    """Run an exercise notebook with its blanks, and keep the outputs."""
     from nbclient import NotebookClient
     from nbclient.exceptions import CellExecutionError
 
@@ -207,7 +203,7 @@ def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:
         timeout=120,
         kernel_name="python3",
         resources={"metadata": {"path": str(folder)}},
-        # It warns of its own sockets, which are on this machine.
+        # Hide the kernel's warning about its own sockets, which are on this machine.
         extra_arguments=["--IPKernelApp.log_level=ERROR"],
     )
     try:
@@ -223,7 +219,7 @@ def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:
     notebook.metadata = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
 
 
-# --- all of it ----------------------------------------------------------------------------------
+# --- the release --------------------------------------------------------------------------------
 
 
 def sealed_file(
@@ -231,8 +227,7 @@ def sealed_file(
     first: Mapping[str, dict[str, Any]] | None = None,
     pages: Mapping[str, Pages] | None = None,
 ) -> str:
-    """The text of the file with the sealed questions of a notebook; of a variant,
-    what differs from the ``first``.
+    """Return a notebook's sealed file as text; for a variant, the difference from ``first``.
 
     ``pages`` are those of the first variant, by the name of the question.
     """
@@ -290,9 +285,7 @@ def _about_answer(question: AuthoredQuestion) -> AboutAnswer:
 
 
 def _answer_of(question: AuthoredQuestion) -> str:
-    """A short text that is the same for variants with one answer,
-    whatever points each is compared at.
-    """
+    """Return a short form of an answer, the same whatever points a variant compares it at."""
     public = replace(question.public, salt=question.name)
     reading = read(public, question.plain)
     numbers = canonical(public, reading) if reading.text is None else []
@@ -300,7 +293,7 @@ def _answer_of(question: AuthoredQuestion) -> str:
 
 
 def _demand_answers(answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
-    """Refuse variants with one answer, since a classmate's answer would be right for everybody."""
+    """Reject variants with one answer, since a classmate's would be right for everybody."""
     for question in answers[0]:
         found = [one[question].answer for one in answers if question in one]
         if len(found) > 1 and len(set(found)) == 1:
@@ -312,7 +305,7 @@ def _demand_answers(answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
 
 
 def _demand_later(course: Course, after: Mapping[str, Iterable[str]]) -> None:
-    """Refuse hints for a later question that no notebook asks."""
+    """Reject hints for a later question that no notebook asks."""
     for question, later in after.items():
         for one in later:
             file = course.sources / f"{one.partition('/')[0]}.ipynb"
@@ -325,11 +318,11 @@ def _demand_later(course: Course, after: Mapping[str, Iterable[str]]) -> None:
 def _release_variant(
     path: Path, number: int, pages: Mapping[str, Pages], course: Course
 ) -> dict[str, AboutAnswer]:
-    """Solve, try and seal one variant of a notebook's questions.
+    """Solve, test and seal one variant of a notebook's questions.
 
-    What came of it is kept beside the archive, under a name that follows from all that it was made
-    with: the source, our code, the versions of what computes the answers, and the pages of the
-    first variant, to which its own point.
+    The results are stored beside the archive, under a name that depends on everything they are made
+    from: the source, our code, the versions of the packages that compute the answers, and the pages
+    of the first variant, which theirs refer to.
     """
     first = (course.sealed / f"{path.stem}.json").read_text("utf8")
     digest = hashlib.sha256(
@@ -372,12 +365,11 @@ def _versions() -> Iterator[str]:
 
 
 def _even_out(name: str, code: str, course: Course) -> None:
-    """Give all variants of a question as many lockers as the one but
-    most of them has, with empty ones.
+    """Add empty lockers, so that nearly all variants of a question have equally many.
 
-    How many there are follows from the answer: from what mistakes lead to the same, and how near to
-    the edges of their cells the numbers lie. Over sixteen variants that singles out a right formula
-    with no slow hash at all.
+    The number depends on the answer: on the mistakes that lead to the same one, and on how near the
+    edges of their cells the numbers are. Over sixteen variants, that would identify a right formula
+    without any slow hash.
     """
     first = course.sealed / f"{name}.json"
     variants = sorted((course.sealed / "variants").glob(f"{name}-*.json"))
@@ -387,13 +379,14 @@ def _even_out(name: str, code: str, course: Course) -> None:
         ones = [content["questions"].get(question, {}) for content in contents]
         ones = [one for one in ones if one.get("lockers")]
         if not ones:
-            continue  # of an exam, or a text that a person reads
+            # This is an exam's question, or a text that a person reads.
+            continue
         counts = sorted(sealing.count_of(one["lockers"]) for one in ones)
-        # Up to the very most would make the file of every variant as large as the largest.
+        # Filling up to the maximum would make every variant's file as large as the largest.
         most = counts[-2] if len(counts) > 2 else -(-counts[-1] // TOGETHER) * TOGETHER
         for one in ones:
             one["lockers"] = sealing.filled_up(one["lockers"], most, f"{code} {one['salt']}")
-        # So with the pages that each variant has of its own, beside those of the first one.
+        # Do the same with the pages that each variant has in addition to those of the first.
         own = [one for one in ones[1:] if contents[0]["questions"][question].get("pages")]
         most = max((len(one.get("pages") or ()) for one in own), default=0)
         for one in own if most else ():
@@ -407,9 +400,7 @@ def _even_out(name: str, code: str, course: Course) -> None:
 def _add_names_for_others(
     name: str, answers: Sequence[Mapping[str, AboutAnswer]], course: Course
 ) -> None:
-    """Seal with the first variant of each question what is right in any: so a
-    classmate's answer is recognised.
-    """
+    """Seal all variants' answers with the first one, so that a classmate's answer is recognised."""
     file = course.sealed / f"{name}.json"
     content = json.loads(file.read_text("utf8"))
     for question in answers[0]:
@@ -430,8 +421,8 @@ def _add_names_for_others(
 def _run_one(path: Path, sealed: Path) -> None:
     notebook = nbformat.read(path, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
-        # The sealed questions stand beside the notebook, as they do
-        # where there is no package for them.
+        # Place the sealed questions beside the notebook, as for a course without a package for
+        # them.
         shutil.copytree(sealed, Path(folder, "sealed"))
         run_notebook(notebook, folder)
     nbformat.write(notebook, path)
@@ -449,11 +440,12 @@ def release(
     ----------
     course : Course
     only : sequence of str
-        Names of the notebooks to make; all of them if there is none.
+        The names of the notebooks to make; all of them if empty.
     run : bool
-        Whether to run the exercise notebooks, so that they show what an untouched notebook shows.
+        Whether to run the exercise notebooks, so that they have the outputs of an untouched
+        notebook.
     variants : collection of int, optional
-        Which variants to make; all of them if nothing is said.
+        The variants to make; by default all.
 
     Returns
     -------
@@ -463,8 +455,8 @@ def release(
     Raises
     ------
     AuthorError
-        A question is not well posed, or the folders hold what these sources do not make. Nothing is
-        ever deleted.
+        A question is not well posed, or the folders contain files that these sources do not make.
+        We delete no such file.
     """
     _demand_sources(course, {path.stem for path in notebooks_in(course.sources)})
     paths = notebooks_in(course.sources, only)
@@ -483,7 +475,8 @@ def release(
             found = pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted))
             for (path, *_), more in zip(wanted, found, strict=True):
                 answers[path].append(more)
-        if variants is None:  # a few may have the same answer by chance
+        # A few variants may have the same answer by chance, so compare only if all are made.
+        if variants is None:
             for path in paths:
                 _demand_answers(answers[path])
         _demand_later(
@@ -493,7 +486,8 @@ def release(
             for path in (course.sealed / "variants").glob(f"{one.name}-*.json"):
                 number = path.stem.removeprefix(f"{one.name}-")
                 if re.fullmatch(r"\d+", number) and int(number) >= one.variants:
-                    path.unlink()  # this notebook made it when it had more variants
+                    # This notebook made the file when it had more variants.
+                    path.unlink()
             _even_out(one.name, one.code, course)
             _add_names_for_others(one.name, answers[course.sources / f"{one.name}.ipynb"], course)
         if run:
@@ -505,7 +499,7 @@ def release(
 
 
 def _demand_sources(course: Course, known: Collection[str]) -> None:
-    """Refuse a folder that holds another course's exercises, so that none are lost."""
+    """Reject a folder that contains another course's exercises, so that none are lost."""
     others = [
         path
         for folder, suffix in ((course.exercises, ".ipynb"), (course.sealed, ".json"))
@@ -520,7 +514,7 @@ def _demand_sources(course: Course, known: Collection[str]) -> None:
 
 
 def differences(first: str | Path, second: str | Path, pattern: str) -> list[str]:
-    """Names of the files of two folders that are not the same in both."""
+    """Return the names of the files that differ between two folders."""
     names = {path.name for folder in (first, second) for path in Path(folder).glob(pattern)}
     return sorted(
         name

@@ -1,8 +1,7 @@
-"""Questions tried before students get them: right forms pass, each
-mistake has its message, nothing leaks.
+"""Tests of questions before release: right forms pass, mistakes are named, and nothing leaks.
 
-The result is a page for the author: what each question recognises, how many answers it allows where
-they are few, and what is wrong with it, if anything is.
+The result is a page for the author, with what each question recognises, how many answers it allows
+if they are few, and its faults, if any.
 """
 
 import base64
@@ -42,7 +41,7 @@ from .source import (
     read_source,
 )
 
-#: Maximum number of equivalent forms in which to test a right answer.
+#: The most equivalent forms in which to test a right answer.
 FORMS = 6
 COLUMNS = (
     "Question",
@@ -53,7 +52,7 @@ COLUMNS = (
     "Possible answers",
     "Faults",
 )
-#: On a narrow screen each question stands by itself, and each cell says what it is of.
+#: On a narrow screen, each question stands alone and each cell has a label.
 STYLE = """
 :root{color-scheme:light dark}
 body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem;
@@ -84,16 +83,16 @@ class Finding(NamedTuple):
     name: str
     kind: str
     forms: list[str]
-    mistakes: list[tuple[str, str]]  # the note, and what is said
+    mistakes: list[tuple[str, str]]  # The note and the message.
     unmoved: list[str]
     possible: int | None
     worth: float
     faults: list[str]
 
 
-#: What something is that no student may receive, by its text without spaces.
+#: Descriptions of what no student may receive, by its text without spaces.
 Secrets = Mapping[str, str]
-#: What it is, and where it stands.
+#: The description of a secret, and where it was found.
 Leak = tuple[str, str]
 
 
@@ -105,17 +104,17 @@ class Cell(TypedDict):
 
 
 def try_question(question: AuthoredQuestion, against_sealed: bool = True) -> Finding:
-    """Try one question as students will, right and wrong.
+    """Try right and wrong answers to one question, as students will.
 
     Parameters
     ----------
     question : AuthoredQuestion
     against_sealed : bool
-        Whether to try what was released of it too.
+        Whether to test its released file, too.
 
-    Answers are compared with what is sealed before the slow hash locks it up: that the locks hold
-    the same is shown by the right answer here, and for the rest by the release, which makes the
-    locks of nothing else.
+    Answers are compared before the slow hash locks them up. That the locks contain the same is
+    tested here for the right answer. For the others it follows from the release, which locks
+    nothing else.
     """
     faults: list[str] = []
     if kinds()[question.public.kind].by_a_person:
@@ -168,9 +167,7 @@ def try_question(question: AuthoredQuestion, against_sealed: bool = True) -> Fin
 
 
 def _try_text(question: AuthoredQuestion) -> Finding:
-    """A question whose answers a person reads: the untouched blank is
-    none, and every text is put aside.
-    """
+    """Test a question that a person marks: blanks are no answer, and every text waits."""
     outcomes = [_judge(question, answer).outcome for answer in (..., "", question.answer)]
     faults = (
         []
@@ -228,13 +225,11 @@ def _try_mistakes(
     return named, unmoved
 
 
-# --- what must not be found in anything that a student receives ---------------------------------
+# --- secrets that nothing students receive may contain ------------------------------------------
 
 
 def secrets_of(source: Source) -> Secrets:
-    """Texts of a notebook with solutions that no student may receive,
-    without spaces: what each is, and it.
-    """
+    """Return the secrets of a notebook with solutions, each with a description."""
     texts: list[tuple[str, str]] = []
     for cell in source.notebook.cells:
         if cell.cell_type == "code":
@@ -256,8 +251,7 @@ def secrets_of(source: Source) -> Secrets:
         for cell in source.notebook.cells
         for line in HIDDEN.sub("", SOLUTION.sub("", cell.source)).splitlines()
     }
-    # What stands in place of a solution is given too: the signature
-    # of a function and its docstring.
+    # Blanks are public, too: the signature of a function and its docstring.
     owners = {question.variable or "": name for name, question in source.questions.items()}
     given |= {
         _dense(line)
@@ -265,15 +259,15 @@ def secrets_of(source: Source) -> Secrets:
         for region in SOLUTION.findall(cell.source)
         for line in blank(region, owners).splitlines()
     }
-    # The arguments that a function is tried with are public: whoever checks it must call it.
+    # The arguments for testing a function are public, since its check must call it.
     given |= {
         _dense(json.dumps(question.public.calls or "")) for question in source.questions.values()
     }
     secrets: dict[str, str] = {}
     for what, text in texts:
         dense = _dense(text)
-        # Short lines stand anywhere, imports and marks tell nothing, and what the author gives
-        # openly elsewhere is no secret.
+        # Skip short lines, which occur anywhere, imports and marks, which reveal nothing, and what
+        # the author reveals elsewhere.
         if (
             len(dense) >= 14
             and not _tells_nothing(text)
@@ -284,14 +278,13 @@ def secrets_of(source: Source) -> Secrets:
 
 
 def told_openly(question: AuthoredQuestion, secrets: Secrets) -> list[str]:
-    """The faults of the ladder of a question: no secret locks its steps, so
-    anybody can read them with a few lines.
+    """Return the faults of a question's ladder, whose steps anybody can read with a little code.
 
     Parameters
     ----------
     question : AuthoredQuestion
     secrets : dict
-        What `secrets_of` gives.
+        The result of `secrets_of`.
     """
     openly = "A step of its ladder, which anybody can open with a few lines of code,"
     faults: list[str] = []
@@ -306,9 +299,10 @@ def told_openly(question: AuthoredQuestion, secrets: Secrets) -> list[str]:
 
 
 def _judge_code(question: AuthoredQuestion, code: str) -> str:
-    """The outcome of a piece of code as the answer to a question; empty where it gives none."""
+    """Return the outcome of code as the answer to a question; empty if it gives none."""
     symbols = {name.rstrip("'"): sympy.Symbol(name.rstrip("'")) for name in question.public.symbols}
-    with contextlib.suppress(Exception):  # if it fails in any way, it is not an answer
+    # If it fails in any way, it is not an answer.
+    with contextlib.suppress(Exception):
         return _judge(
             question, eval(code.partition("=")[2] or code, {**vars(sympy), "sm": sympy, **symbols})
         ).outcome
@@ -316,9 +310,7 @@ def _judge_code(question: AuthoredQuestion, code: str) -> str:
 
 
 def _tells_nothing(line: str) -> bool:
-    """Whether a line is an import, a mark, or the head of a function, a
-    class or a loop over what has a name or only counts.
-    """
+    """Check for an import, a mark, or the head of a function, class or simple loop."""
     loop = r"for \w+ in (\w+|range\(\d+\)):$"
     head = rf"\s*(import |from \w[\w.]* import |def |### |class |{loop})"
     return re.match(head, line) is not None
@@ -326,7 +318,8 @@ def _tells_nothing(line: str) -> bool:
 
 def _writings(answer: object) -> list[str]:
     if isinstance(answer, tuple) and isinstance(answer[-1], str):
-        answer = answer[0]  # of a number with its unit
+        # Drop the unit of a number.
+        answer = answer[0]
     try:
         expression = (
             sympy.Matrix(answer) if isinstance(answer, (list, tuple)) else sympy.sympify(answer)
@@ -348,9 +341,7 @@ def _dense(text: str) -> str:
 def released_texts(
     exercises: str | Path, sealed: str | Path, archive: str | Path
 ) -> dict[str, str]:
-    """Everything that students receive, as texts by place: files, what
-    is packed in them, and pictures.
-    """
+    """Return all text that students receive, by place, including packed files and pictures."""
     files = {
         str(path): path.read_bytes()
         for folder, pattern in ((exercises, "*.ipynb"), (sealed, "*.json"))
@@ -375,7 +366,7 @@ def released_texts(
 
 
 def _strings(data: object) -> Iterator[str]:
-    """All texts in JSON data, as they are read and not as they are written."""
+    """Iterate over all strings in JSON data, decoded."""
     if isinstance(data, str):
         yield data
     elif isinstance(data, dict):
@@ -383,7 +374,7 @@ def _strings(data: object) -> Iterator[str]:
             yield key
             yield from _strings(value)
     elif isinstance(data, list):
-        # A notebook may keep a text as a list of its lines.
+        # A notebook may store a text as a list of its lines.
         if all(isinstance(part, str) for part in data):
             yield "".join(data)
         else:
@@ -392,7 +383,7 @@ def _strings(data: object) -> Iterator[str]:
 
 
 def found_in(texts: Mapping[str, str], secrets: Secrets) -> list[Leak]:
-    """Each of some secrets that stands in a text: what it is, and where."""
+    """Return each secret that a text contains, with its description and the place."""
     return [
         (what, place)
         for secret, what in secrets.items()
@@ -409,18 +400,17 @@ def selftest(
     page: str | Path | None = None,
     only: Collection[str] = (),
 ) -> list[str]:
-    """Try all questions of a course, or of the notebooks that are named,
-    look for leaks, and write the page.
+    """Test all questions of a course, or of some notebooks, look for leaks, and write the page.
 
     Returns
     -------
     list of str
-        All faults; empty if the exercises can be given to students.
+        All faults; empty if students can get the exercises.
 
     Raises
     ------
     AuthorError
-        There is nothing to try, or a notebook cannot be read.
+        There is nothing to test, or a notebook cannot be read.
     """
     paths = notebooks_in(course.sources, only)
     with processes_for(paths) as pool:
@@ -439,7 +429,7 @@ def selftest(
 
 
 def _try_notebook(path: Path, course: Course) -> tuple[list[Finding], Secrets]:
-    """Try the questions of a notebook; give what was found of them, and the notebook's secrets."""
+    """Test the questions of a notebook, and return the findings and the notebook's secrets."""
     source = read_source(path, edition=course.edition)
     secrets = secrets_of(source)
     findings: list[Finding] = []

@@ -1,5 +1,4 @@
-"""A notebook with solutions: what its author wrote between nbgrader's
-marks, and what its cells compute.
+"""A notebook with solutions: what its author wrote between nbgrader's marks, and its results.
 
 ``### BEGIN SOLUTION`` and ``### BEGIN HIDDEN TESTS`` mark what students do not get.
 """
@@ -39,16 +38,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from nbformat import NotebookNode
 
-#: The source whose questions stand inside the chapters: only its sealed file is made.
+#: The source of the questions inside the chapters, for which only a sealed file is made.
 CHAPTERS = "chapters"
-#: Location of the code that determines a question's seals.
+#: The subpackages whose code determines a question's seals.
 ROOMS = ("authoring", "checking")
-#: Digits after the point of which a number that students see has no more:
-#: others are the rounding of a machine.
+#: The most decimal places of a number that students see; more come from rounding errors.
 MOST_PLACES = 10
-#: What is written in place of pi, and is not: right to some digits, and the answer to no more.
+#: Rounded values of pi, which are right to some digits only, so an answer would be, too.
 PI_ROUNDED = re.compile(r"(?<![\w.])3\.14(?:1(?:5(?:9\d{0,9})?|6)?)?(?![\w.])")
-#: Characters of a parameter up to which it is a word, and not a part of the text.
+#: The most characters of a parameter that counts as a word; a longer one is part of the text.
 LONGEST_WORD = 40
 SOLUTION = re.compile(
     r"^[ \t]*### BEGIN SOLUTION[ \t]*\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S
@@ -56,26 +54,26 @@ SOLUTION = re.compile(
 HIDDEN = re.compile(
     r"^[ \t]*### BEGIN HIDDEN TESTS[ \t]*\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S
 )
-#: What is marked, and every line that was meant as a mark.
+#: The names in marks, and a pattern for every line that was meant as a mark.
 MARKED = ("SOLUTION", "HIDDEN TESTS", "VARIANTS")
 MARK = re.compile(r"[ \t]*#+[ \t]*(BEGIN|END)[ \t]+((?:SOLUTION|HIDDEN|VARIANT).*)", re.I)
 
 
 class Drawing(NamedTuple):
-    """A plot of Matplotlib as the figure of a question: ``drawing(figure, alt)`` in a source.
+    """A Matplotlib plot as the figure of a question: ``drawing(figure, alt)`` in a source.
 
     Attributes
     ----------
     figure : matplotlib.figure.Figure
     alt : str
-        What it shows, for those who do not see it.
+        A description for readers who cannot see it.
     """
 
     figure: Figure
     alt: str
 
     def picture(self) -> str:
-        """The same SVG each time, with its letters as outlines: nobody needs the typeface."""
+        """Return the plot as SVG, always the same, with letters as outlines that need no font."""
         import matplotlib
 
         text = io.StringIO()
@@ -98,12 +96,12 @@ class Source(NamedTuple):
 
 
 def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
-    """The notebooks with solutions of a folder, or those of them that are named.
+    """Return the notebooks with solutions in a folder, or the ones given by name.
 
     Raises
     ------
     AuthorError
-        There is none, or none of a name.
+        There are none, or a name does not exist.
     """
     found = sorted(Path(folder).glob("*.ipynb"))
     if not found:
@@ -120,10 +118,10 @@ def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
 
 
 def processes_for(paths: Collection[Path]) -> ProcessPoolExecutor:
-    """Processes that share the notebooks among them.
+    """Return a pool of processes to share the notebooks.
 
-    On Linux they are forked, as Python did by itself until 3.13: so they have the plug-ins and
-    the settings of the process that asks.
+    On Linux they are forked, as was Python's default before 3.14, so they have this process's
+    plug-ins and settings.
     """
     context = multiprocessing.get_context("fork" if sys.platform == "linux" else None)
     return ProcessPoolExecutor(min(len(paths), os.cpu_count() or 1), context)
@@ -131,38 +129,34 @@ def processes_for(paths: Collection[Path]) -> ProcessPoolExecutor:
 
 @functools.cache
 def digest_of_code() -> str:
-    """A text that follows from the code that reads and seals
-    questions, ours and that of plug-ins.
-    """
+    """Return a digest of the code that reads and seals questions, ours and that of plug-ins."""
     digest = hashlib.sha256()
     for folder in [
         *(Path(coursework.__file__).parent / room for room in ROOMS),
         *map(Path, folders_of(packages())),
     ]:
         for path in sorted(folder.rglob("*.py")):
-            # A new version by itself is no reason to try everything again.
+            # A new version number alone is no reason to test everything again.
             digest.update(path.name.encode() + VERSION.sub("", path.read_text("utf8")).encode())
     return digest.hexdigest()
 
 
 def names_asked(path: str | Path) -> dict[str, str]:
-    """The names of the questions of a notebook with solutions, and the
-    variable of each; nothing is run.
-    """
+    """Return the names of a source's questions, and the variable of each, without running it."""
     return checked_in(
         "".join(cell["source"]) for cell in cells_of(path) if cell["cell_type"] == "code"
     )
 
 
 def cells_of(path: str | Path) -> list[dict[str, Any]]:
-    """The cells of a notebook with solutions, as they are in its file.
+    """Return the cells of a notebook with solutions, as they are in its file.
 
     Raises
     ------
     AuthorError
-        It is not a notebook, such as after a merge with conflicts.
+        It is not a notebook, for example after a merge with conflicts.
     """
-    # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
+    # Avoid nbformat, which takes a second to import, since this runs at each start.
     try:
         return list(json.loads(Path(path).read_text("utf8"))["cells"])
     except (ValueError, LookupError, TypeError) as error:
@@ -178,21 +172,20 @@ def read_source(
     only: Collection[str] | None = None,
     pictures: bool | None = None,
 ) -> Source:
-    """Run a notebook with solutions and give its questions.
+    """Run a notebook with solutions and return its questions.
 
     Parameters
     ----------
     path : path
     variant : int
-        For 0 all questions are given, in their first variant; for another number those that have
-        that variant.
+        0 gives all questions in their first variant; another number gives those that have that
+        variant.
     edition : str
-        Of a course: each edition draws afresh.
+        The edition of the course, which determines the draws.
     only : collection of str, optional
-        The questions that are wanted.
+        The questions to return.
     pictures : bool, optional
-        Whether the pictures of variants are drawn; if nothing is said, where all questions are
-        wanted.
+        Whether to draw the pictures of variants; by default, if all questions are wanted.
 
     Raises
     ------
@@ -202,10 +195,11 @@ def read_source(
     import nbformat
 
     path = Path(path)
-    cells_of(path)  # nbformat would not say which file it cannot read
+    # The error of nbformat would not name the file.
+    cells_of(path)
     notebook = nbformat.read(path, as_version=4)
     for number, cell in enumerate(notebook.cells):
-        cell.source = cell.source.replace("\r\n", "\n")  # as some editors of Windows write it
+        cell.source = cell.source.replace("\r\n", "\n")  # Windows editors may write this.
         if cell.cell_type == "code":
             _demand_marks(cell.source, f"{path.name}, cell {number}")
     answers: dict[str, object] = {}
@@ -319,7 +313,7 @@ def read_source(
 
 
 def _demand_marks(text: str, where: str) -> None:
-    """Refuse a misspelt mark, since it would leave a solution in the students' notebook."""
+    """Reject a misspelt mark, which would leave a solution in the students' notebook."""
     open_one = ""
     for line in text.splitlines():
         found = MARK.fullmatch(line)
@@ -345,7 +339,7 @@ def _demand_marks(text: str, where: str) -> None:
 
 
 def _demand_pi(file: str, notebook: NotebookNode) -> None:
-    """A rounded pi makes right answers wrong: those that students give with all of its digits."""
+    """Reject a rounded pi, by which an answer with all digits would be wrong."""
     for number, cell in enumerate(notebook.cells):
         for region in SOLUTION.findall(cell.source) if cell.cell_type == "code" else ():
             found = PI_ROUNDED.search(re.sub(r"#.*", "", region))
@@ -357,7 +351,7 @@ def _demand_pi(file: str, notebook: NotebookNode) -> None:
 
 
 def _demand_few_digits(name: str, shown: Mapping[str, str]) -> None:
-    """A text shows numbers as they are meant, and not 0.30000000000000004."""
+    """Reject texts that would show numbers such as 0.30000000000000004."""
     for parameter, text in shown.items():
         found = re.search(rf"\d*\.\d{{{MOST_PLACES + 1},}}", text)
         if found:
@@ -368,7 +362,7 @@ def _demand_few_digits(name: str, shown: Mapping[str, str]) -> None:
 
 
 def _demand_hidden(file: str, notebook: NotebookNode, variables: Mapping[str, str]) -> None:
-    """An answer or a question that stands outside of the marks would be given to students."""
+    """Reject an answer or a question outside the marks, which students would get."""
     owners = {variable: name for name, variable in variables.items()}
     cells = [
         (number, cell.source)
@@ -400,9 +394,7 @@ def _demand_shown(
     texts: Mapping[str, str],
     questions: Mapping[str, author.AuthoredQuestion],
 ) -> None:
-    """What varies belongs to a question, and what a text shows in braces is
-    drawn; students see all that is drawn.
-    """
+    """Reject variants without a question, and draws that do not match what students see."""
     codes = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
     code = "\n".join(VARIANTS.sub("", HIDDEN.sub("", SOLUTION.sub("", text))) for text in codes)
     for name in rules:
@@ -414,14 +406,14 @@ def _demand_shown(
         braces = dict.fromkeys(re.findall(r"\{\{(\w+)\}\}", texts[name]))
         unknown = [one for one in braces if one not in (*given[name], "picture")]
         unshown = [one for one in given[name] if one not in braces]
-        # Braces within braces may be TeX; a parameter that is shown nowhere makes it a slip.
+        # Nested braces may be TeX, but if a parameter is shown nowhere, they are a typo.
         if unknown and unshown:
             raise author.AuthorError(
                 f"{name}: its text shows {{{{{unknown[0]}}}}}, which you have not drawn; you have "
                 f"drawn {', '.join(given[name])}."
             )
         unseen = [one for one in unshown if not re.search(rf"\b{one}\b", code)]
-        # What `where` ties to others may stand for them.
+        # With `where`, related parameters may show its value.
         if unseen and not rules[name].picture and not rules[name].where:
             raise author.AuthorError(
                 f"{name}: you draw {unseen[0]}, but students would not see it. Show it in the "
@@ -430,8 +422,9 @@ def _demand_shown(
 
 
 def _texts_of_variants(notebook: NotebookNode) -> dict[str, str]:
-    """The text of each question with variants, with the places of its parameters:
-    the Markdown below what may vary.
+    """Return the text of each question with variants, with placeholders for its parameters.
+
+    It is the Markdown below the cell that draws them.
     """
     texts: dict[str, str] = {}
     for cell, after in itertools.pairwise([*notebook.cells, None]):
@@ -462,8 +455,7 @@ def variant_drawn(
 def texts_of_questions(
     notebook: NotebookNode, figures: Mapping[int, Drawing] | None = None
 ) -> dict[str, str]:
-    """The text of each question as it stands in the source: the Markdown between
-    the check before it and its own.
+    """Return the text of each question: the Markdown between the check before it and its own.
 
     ``figures`` are the drawings by the numbers of their cells, which students get as pictures.
     """
@@ -477,7 +469,7 @@ def texts_of_questions(
             above.append(cell.source)
         elif cell.cell_type == "code":
             found = checked_in([cell.source])
-            # The notebook's title, with what it says of all questions, is no part of the first.
+            # The notebook's title, with its introduction to all questions, is no part of the first.
             texts |= dict.fromkeys(
                 found, "\n\n".join(above[len(above) > 1 and above[0].startswith("# ") :])
             )
@@ -486,9 +478,7 @@ def texts_of_questions(
 
 
 def _is_given(value: object) -> bool:
-    """Whether a student's cell may need a parameter: numbers, words and
-    lists of them, no whole sentences.
-    """
+    """Check whether a cell may need a parameter: numbers, words or lists, not sentences."""
     return (
         (isinstance(value, str) and len(value) <= LONGEST_WORD)
         or _is_plain(value)
@@ -515,7 +505,7 @@ def _replaced(module: ModuleType, name: str, value: object) -> Iterator[None]:
 
 
 def _run(source: str, namespace: dict[str, Any], where: str) -> Any:
-    """Run a cell and give the value of its last line, as a notebook shows it."""
+    """Run a cell and return the value of its last line, as a notebook shows it."""
     tree = ast.parse(source, where)
     last = tree.body[-1] if tree.body else None
     if isinstance(last, ast.Expr):
@@ -527,12 +517,12 @@ def _run(source: str, namespace: dict[str, Any], where: str) -> Any:
 
 
 def checked_names(notebook: NotebookNode) -> dict[str, str]:
-    """The name of the answer of each question, from the calls of ``check``."""
+    """Return the variable of each question's answer, from the calls of ``check``."""
     return checked_in(cell.source for cell in notebook.cells if cell.cell_type == "code")
 
 
 def checked_in(codes: Iterable[str]) -> dict[str, str]:
-    """The same of the code of cells."""
+    """Return the variables of the answers in some code, by question."""
     found: dict[str, str] = {}
     for node in (node for code in codes if "check" in code for node in ast.walk(ast.parse(code))):
         if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "check":
@@ -546,7 +536,7 @@ def checked_in(codes: Iterable[str]) -> dict[str, str]:
 
 
 def bound(region: str, owners: Mapping[str, str]) -> list[str]:
-    """The answers that a solution binds, in order."""
+    """Return the answers that a solution assigns, in order."""
     names = []
     for node in ast.parse(textwrap.dedent(region)).body:
         if isinstance(node, ast.FunctionDef):
@@ -557,24 +547,24 @@ def bound(region: str, owners: Mapping[str, str]) -> list[str]:
 
 
 def answered_in(text: str, owners: Mapping[str, str]) -> list[str]:
-    """The answers that the solutions in a cell bind, in order."""
+    """Return the answers that the solutions in a cell assign, in order."""
     return [name for region in SOLUTION.findall(text) for name in bound(region, owners)]
 
 
 def solved(text: str) -> str:
-    """A cell with its solution, without the marks around it and without hidden tests."""
+    """Return a cell with its solution, without the marks around it and without hidden tests."""
     return HIDDEN.sub("", SOLUTION.sub(lambda region: region[1], in_variants(text))).rstrip()
 
 
 def posed(text: str, owners: Mapping[str, str]) -> str:
-    """The same cell as students get it: with blanks, and without hidden tests."""
+    """Return a cell as students get it, with blanks and without hidden tests."""
     return HIDDEN.sub(
         "", SOLUTION.sub(lambda region: blank(region[1], owners), in_variants(text))
     ).rstrip()
 
 
 def in_variants(text: str) -> str:
-    """A cell that says what may vary as students get it: it shows their variant."""
+    """Return a cell that draws variants as students get it, where it shows their variant."""
     found = drawn_in(text)
     return (
         text

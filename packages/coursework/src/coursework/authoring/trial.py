@@ -1,6 +1,4 @@
-"""The author's preview of a question: its text, and everything that
-a student may hear about an answer.
-"""
+"""The author's preview of a question: its text, and everything that a student may be told."""
 
 import html
 import re
@@ -13,7 +11,7 @@ from .course import Course
 from .selftest import try_question, write_page
 from .source import notebooks_in, read_source, texts_of_questions
 
-#: All variants of a question stand side by side, to be compared.
+#: All variants of a question side by side, for comparison.
 SIDE_BY_SIDE = (
     "<style>.variants{display:grid;gap:1rem;"
     "grid-template-columns:repeat(auto-fill,minmax(min(22rem,100%),1fr))}</style>"
@@ -58,7 +56,7 @@ def trial(course: Course, name: str, page: str | Path) -> str | Path:
 
 
 def _variants(path: Path, question: AuthoredQuestion) -> str:
-    """All variants, each with its text, its answer, its mistakes and its worked solution."""
+    """Return all variants, each with its text, answer, mistakes and worked solution."""
     own = (
         read_source(path, number, only=[question.name], pictures=True).questions[question.name]
         for number in range(question.public.variants)
@@ -79,7 +77,7 @@ def _variants(path: Path, question: AuthoredQuestion) -> str:
 
 
 def _shown(above: str, question: AuthoredQuestion) -> str:
-    """The text of a question as students meet it, with its worked solution folded below it."""
+    """Return the text of a question as students see it, with its worked solution folded below."""
     variant = question.public.variant
     text = above.replace(variant.text, "") + "\n\n" + text_of(variant) if variant else above
     return (
@@ -89,12 +87,12 @@ def _shown(above: str, question: AuthoredQuestion) -> str:
 
 
 def _under(text: str) -> str:
-    """A text whose headings stand below that of its section."""
+    """Return a text with its headings below that of its section."""
     return re.sub(r"(</?)h[12]>", r"\1h3>", text)
 
 
 def _with_mathematics(page: str) -> str:
-    """The page with its formulas as browsers show them."""
+    """Return the page with its formulas as MathML."""
     return re.sub(r"(\${1,2})([^$<]+)\1", lambda found: mathml(html.unescape(found[2])), page)
 
 

@@ -1,15 +1,16 @@
-"""How the parameters of a question's variants are drawn, by rule, and how its text shows them.
+"""Rules that draw the parameters of a question's variants, and the parameters in its text.
 
-In a source, a cell above the text of a question says what may vary; the text
-shows a parameter as ``{{force}}``:
+In a source, a cell above the text of a question defines what may vary, and the text shows a
+parameter as ``{{force}}``:
 
 .. code-block:: python
 
-    ### BEGIN VARIANTS lever = draw('levers/see-saw', force=[20, 30, 45],
-    arm=[0.2, 0.4, 0.5]) ### END VARIANTS
+    ### BEGIN VARIANTS
+    lever = draw('levers/see-saw', force=[20, 30, 45], arm=[0.2, 0.4, 0.5])
+    ### END VARIANTS
 
-Students get in place of both ``lever = variant('levers/see-saw')``, which
-shows the text of their own variant.
+In place of both, students get ``lever = variant('levers/see-saw')``, which shows the text of their
+own variant.
 """
 
 import ast
@@ -28,11 +29,11 @@ from .author import AuthorError
 VARIANTS = re.compile(
     r"^[ \t]*### BEGIN VARIANTS\n(.*?)^[ \t]*### END VARIANTS[ \t]*\n?", re.M | re.S
 )
-#: How many variants a question has if nothing is said.
+#: The default number of variants of a question.
 COUNT = 16
-#: How often a variant is drawn anew because it is one that there was already, or does not fit.
+#: The most attempts to draw a variant that is new and fits.
 MOST_ATTEMPTS = 400
-#: How many combinations are looked at, to see how many will do.
+#: The most combinations to try when counting those that fit.
 MOST_LISTED = 10_000
 
 
@@ -47,14 +48,14 @@ class Rule:
     Attributes
     ----------
     count : int
-        How many variants there are.
+        The number of variants.
     pools : dict
-        For each parameter a list to choose from, or a function of a ``random.Random`` that gives a
-        value.
+        For each parameter, a list to choose from, or a function of a ``random.Random`` that returns
+        a value.
     where : function, optional
-        Which choices will do: a function of the dictionary of parameters.
+        Accepts or rejects a dictionary of parameters.
     picture : function, optional
-        The drawing of a variant, from the dictionary of its parameters: the text shows it as
+        Returns the drawing of a variant from the dictionary of its parameters; the text shows it as
         ``{{picture}}``.
     """
 
@@ -65,8 +66,9 @@ class Rule:
     picture: Callable[..., Any] | None = None
 
     def without_what_is_ruled_out(self) -> "Rule":
-        """The same rule with as many variants as ``where`` leaves, if the lists alone give enough:
-        who takes a variant out need not count the others.
+        """Return the rule with as many variants as ``where`` leaves, if the lists alone are enough.
+
+        An author who excludes a variant thus need not count the others.
         """
         lists = [list(pool) for pool in self.pools.values() if not callable(pool)]
         total = math.prod(map(len, lists))
@@ -77,13 +79,12 @@ class Rule:
         return replace(self, count=min(self.count, left)) if left else self
 
     def parameters(self, number: int, edition: str = "") -> dict[str, Any]:
-        """The parameters of a variant. Of the first edition, variant
-        0 takes the first of each list.
+        """Return a variant's parameters. Variant 0 of the first edition has the first of each list.
 
         Raises
         ------
         AuthorError
-            There are not as many different variants as were asked for.
+            There are fewer different variants than the rule's number.
         """
         found: list[dict[str, Any]] = []
         for order in range(number + 1):
@@ -116,7 +117,7 @@ class Rule:
 
 
 def written(parameters: Mapping[str, object]) -> dict[str, str]:
-    """Parameters as the text of a question shows them."""
+    """Return parameters as the text of a question shows them."""
     return {name: _written(value) for name, value in parameters.items()}
 
 
@@ -131,7 +132,7 @@ def _written(value: object) -> str:
 
 
 def drawn_in(text: str) -> tuple[str, str] | None:
-    """The variable and the question of a cell that says what may vary, or ``None``.
+    """Return the variable and the question of a cell that draws variants, or ``None``.
 
     Raises
     ------

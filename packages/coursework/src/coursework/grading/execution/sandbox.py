@@ -824,8 +824,8 @@ def run_notebooks(
              "questions": {name: {"variable": text or None,
                                   "calls": {"arguments": [[...], ...], "as": "lists" or "arrays"} or
                                   None, "secret calls": the same, optional}},
-             "files": {name: base64 text},  # optional, beside it "seed": number}                #
-             optional, 0
+             "files": {name: base64 text},  # optional, beside it
+             "seed": number}                # optional, 0
     workers : int
         The number of notebooks to run at a time; each worker is a warm parent of its own.
     limits, allow_weak_isolation, without
