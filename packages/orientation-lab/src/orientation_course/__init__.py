@@ -1,11 +1,9 @@
-"""What this book's exercises bring to coursework: kinds of questions about
-orientation, and the sealed questions.
-"""
+"""What this book adds to coursework: kinds of questions, and the sealed questions."""
 
 from .kinds import KINDS
 from .mistakes import DEEDS
 
-#: What the notebooks import.
+#: The packages that the notebooks import.
 PACKAGES = ("orientation", "orientation_figures", "orientation_recordings")
 
 #: Number of possible answers for each kind of question that has only a few.

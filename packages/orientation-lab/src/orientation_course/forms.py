@@ -1,4 +1,4 @@
-"""Other ways of writing an orientation, and other orientations, to try questions with."""
+"""Other ways to write an orientation, and other orientations, to test questions with."""
 
 import sympy
 from sympy import Rational
@@ -11,7 +11,7 @@ from .mistakes import Answer, Turns, dcm_of, quaternion_of
 
 
 def of_dcm(question: Question, answer: Answer) -> list[tuple[str, object]]:
-    """A direction cosine matrix of symbols as a SymPy reference frame."""
+    """Return a symbolic direction cosine matrix as a SymPy reference frame."""
     if not isinstance(answer, sympy.MatrixBase) or not question.symbols:
         return []
     target, source = (ReferenceFrame(name) for name in question.frames)

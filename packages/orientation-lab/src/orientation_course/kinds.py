@@ -1,8 +1,7 @@
-"""The kinds of questions that are about orientation: how an answer is
-read, and what makes two answers one.
+"""The kinds of questions on orientation: how to read an answer, and when two answers are equal.
 
-A quaternion and its negative, or the many Euler angles of one orientation, are first turned into
-something that there is one of.
+A quaternion and its negative, or the many Euler angles of one orientation, are first converted to
+something unique.
 """
 
 import unicodedata
@@ -38,7 +37,7 @@ from . import forms, mistakes
 
 
 def _dcm(question: Question, value: Value) -> list[int]:
-    # What a function returns has no frames of its own.
+    # A matrix returned by a function has no frames of its own.
     target, source = question.frames or ("", "")
     if value[0] == "frames":
         frames = cast("dict[str, dict[str, Value]]", value[1])
@@ -61,7 +60,7 @@ def _dcm(question: Question, value: Value) -> list[int]:
         value = others[source]
     rows = parts_of(value) if value[0] == "list" else []
     if rows and all(row[0] == "vector" for row in rows):
-        # Its rows as the unit vectors themselves: their components are along the source frame.
+        # The rows as unit vectors: take their components along the source frame.
         if not all(source in by_frame(row) for row in rows):
             raise Fault(
                 "frame",
@@ -85,7 +84,7 @@ def _axis_and_angle(question: Question, value: Value) -> list[int]:
 
 def _sequence(question: Question, plain: Plain) -> str:
     given = word(plain, "A sequence of three axes, such as `'xyz'`").lower()
-    # Wide letters are letters; and in many a book the axes are numbers.
+    # Full-width letters are letters, and many books number the axes.
     text = "".join(letter for letter in unicodedata.normalize("NFKC", given) if letter.isalnum())
     text = text.translate(str.maketrans("123", "xyz"))
     if len(text) != 3 or set(text) - set("xyz"):
@@ -178,8 +177,8 @@ def _axis_fault(question: Question, numbers: Sequence[Number]) -> Fault | None:
 
 
 def _triads(question: Question, entries: Sequence[Number]) -> str:
-    """The triad of an orientation in that of the source frame, as HTML."""
-    # Drawing needs NumPy: it is imported for a picture alone.
+    """Return the triad of an orientation in that of the source frame, as HTML."""
+    # Drawing needs NumPy, so import it only for a picture.
     from orientation_figures.drawing import Drawing
     from orientation_figures.vectors import IDENTITY
     from orientation_figures.words import hatted
@@ -189,13 +188,13 @@ def _triads(question: Question, entries: Sequence[Number]) -> str:
     drawing = Drawing(
         f"The triad of {target}, as we read your answer, drawn in the triad of {source}.", scale=70
     )
-    # The longer one shows where the two coincide.
+    # The longer triad shows where the two coincide.
     drawing.triad("N", IDENTITY, length=1.7, labels=hatted(source.lower()))
     drawing.triad("A", rows, labels=hatted(target.lower()))
     return str(drawing._repr_html_())
 
 
-#: What all kinds here have in common: the messages of one catalogue.
+#: What all these kinds share: the messages of one catalogue.
 _kind = partial(Kind, messages=mistakes.MESSAGES, details=mistakes.DETAILS)
 KINDS = {
     "direction cosine matrix": _kind(
@@ -236,7 +235,7 @@ KINDS = {
         picture=lambda question, numbers: _triads(question, _of_angles(question, numbers)),
         unique=_of_angles,
         fault=_angles_fault,
-        # An entry of the matrix is built of three angles, and off by what all three are.
+        # Each entry of the matrix depends on all three angles, and so on all their errors.
         parts=3,
         wrong="These angles give a different orientation.",
         needs=("sequence",),

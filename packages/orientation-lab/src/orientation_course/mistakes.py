@@ -1,6 +1,4 @@
-"""The typical mistakes with orientations: what each does to a right
-answer, and what the student is told.
-"""
+"""The typical mistakes with orientations: their effect on a correct answer, and their messages."""
 
 import itertools
 import math
@@ -21,9 +19,9 @@ from orientation import (
     space_fixed_from_dcm,
 )
 
-#: An orientation as an author writes it: a matrix or a list of SymPy or of numbers.
+#: An orientation as an author writes it: a matrix or a list, of SymPy expressions or numbers.
 Answer: TypeAlias = Any
-#: Successive turns: the axis of each, as a letter or as components, and the angle.
+#: Successive rotations, each with an axis, as a letter or components, and an angle.
 Turns: TypeAlias = list[tuple[Any, Any]]
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 
@@ -137,13 +135,13 @@ MESSAGES: dict[str, Callable[..., str]] = {
         "reached."
     ),
     "cosine for sine": lambda question: "You swapped sine and cosine.",
-    # Of an axis and an angle: the axis is neither halved nor doubled.
+    # For an axis and an angle: the axis is neither halved nor doubled.
     "half": lambda question: "The angle is half what it should be; the axis is right.",
     "double": lambda question: "The angle is twice what it should be; the axis is right.",
 }
 
 
-#: What the details of a mistake may be: the places that a locker can hold.
+#: The possible details of a mistake: the places that a locker can hold.
 DETAILS = {
     "turn": (None, *range(len(ORDINALS))),
     "first": tuple(range(len(ORDINALS))),
@@ -165,8 +163,7 @@ DETAILS = {
     "axis": "xyz",
 }
 
-#: What the class did, by the note of a mistake or of a fault of the
-#: form: for the instructor's report.
+#: What students did, by the note of a mistake or of a fault of form, for the instructor's report.
 DEEDS = {
     "sign of one turn": "gave the angle of the {turn} rotation the wrong sign",
     "sign of two turns": "gave the angles of the {first} and the {second} rotation the wrong sign",
@@ -207,7 +204,7 @@ DEEDS = {
 
 
 def dcm_of(turns: Turns) -> Answer:
-    """The direction cosine matrix of successive turns."""
+    """Return the direction cosine matrix of successive rotations."""
     result = sympy.eye(3)
     for axis, angle in turns:
         result = dcm_from_axis_angle(_components(axis), sympy.sympify(angle)) * result
@@ -215,7 +212,7 @@ def dcm_of(turns: Turns) -> Answer:
 
 
 def quaternion_of(turns: Turns) -> Answer:
-    """The quaternion of successive turns."""
+    """Return the quaternion of successive rotations."""
     result = sympy.Matrix([1, 0, 0, 0])
     for axis, angle in turns:
         result = multiply_quaternions(
@@ -232,7 +229,7 @@ def _components(axis: Any) -> list[Any]:
 
 
 def _of_turns(build: Callable[[Turns], Answer], turns: Turns) -> Iterator[Mistake]:
-    """Mistakes in building an orientation from successive turns."""
+    """Yield mistakes in building an orientation from successive rotations."""
 
     def changed(*numbers: int) -> Turns:
         return [
@@ -243,7 +240,7 @@ def _of_turns(build: Callable[[Turns], Answer], turns: Turns) -> Iterator[Mistak
     count = len(turns)
 
     def named(turn: int) -> int | None:
-        # A single turn is not called the first of its kind.
+        # A single rotation is not called the first.
         return turn if count > 1 else None
 
     for turn in range(count):
@@ -288,7 +285,7 @@ def _of_turns(build: Callable[[Turns], Answer], turns: Turns) -> Iterator[Mistak
         other[turn] = (turns[turn][0], sympy.pi / 2 - turns[turn][1])
         if build is not quaternion_of:
             yield Mistake("sine for cosine", {"turn": named(turn)}, build(other))
-    # Simpler than the transpose with all other signs, which is the same.
+    # This is simpler than the equivalent transpose with all other signs.
     for turn in range(count) if count > 1 else ():
         yield Mistake("other order, sign of one turn", {"turn": turn}, build(changed(turn)[::-1]))
     if turns and not any(sympy.sympify(angle).free_symbols for _, angle in turns):
@@ -370,7 +367,7 @@ def of_axis_and_angle(
     yield Mistake("in degrees", {}, [axis, angle * 180 / sympy.pi])
     yield Mistake("half", {}, [axis, angle / 2])
     left = sympy.cos(angle) + 1
-    # Twice half a turn is none at all, and that is nobody's doubled angle.
+    # Twice half a turn is no rotation at all, which nobody gives as a doubled angle.
     if not left.is_number or left > 1e-9:
         yield Mistake("double", {}, [axis, 2 * angle])
 

@@ -14,7 +14,8 @@ FILES = {
     for name in ("convention-card.pdf", "convention-card.svg", "convention-card-back.svg")
 }
 FILE = FILES["convention-card.pdf"]
-WIDTH, HEIGHT, MARGIN = 595, 842, 34  # in points: A4
+# In points, for A4.
+WIDTH, HEIGHT, MARGIN = 595, 842, 34
 # The names of the parts of a quaternion, a rotation vector and a matrix, and of the gimbal's
 # angles, in the lines of code.
 QUATERNION = {"w": "q0", "x": "qi", "y": "qj", "z": "qk"}
@@ -33,7 +34,8 @@ ANGLES = {
     "k": 1,
 }
 BY_AXIS = {"az": "psi", "ax": "theta", "ay": "phi"}
-LONGEST = 82  # characters of a line of code that fit beside the name of its form
+# The most characters in a line of code that fit beside the name of its form.
+LONGEST = 82
 ON_THE_FRONT = 12
 FRONT = (
     "Orientation of Reference Frames. "

@@ -3,8 +3,8 @@ r"""Line drawings of reference frames.
 A `Drawing` is a sheet seen by a camera. The camera is one more reference frame $V$, with
 $\hat{v}_x$ to the right, $\hat{v}_y$ up and $\hat{v}_z$ towards the reader; points are given by
 their components along $N$ and reach the sheet through ${}^V\mathbf{C}^N$, without perspective. In a
-notebook the drawing shows itself as inline SVG: it scales with the page, follows the light or dark
-theme, and carries the text that stands for it for readers who do not see it.
+notebook the drawing shows itself as inline SVG, which scales with the page, follows the light or
+dark theme, and carries a text description for readers who cannot see it.
 """
 
 import hashlib
@@ -57,7 +57,7 @@ def view_from(azimuth, elevation):
     Parameters
     ----------
     azimuth : float
-        Where the camera stands: radians about $\hat{n}_z$, from $\hat{n}_x$.
+        The direction of the camera, in radians about $\hat{n}_z$, from $\hat{n}_x$.
     elevation : float
         Radians above the plane of $\hat{n}_x$ and $\hat{n}_y$.
 
@@ -90,7 +90,7 @@ class Drawing(Words):
     Parameters
     ----------
     alt : str
-        The text that stands for the picture: it says what the picture shows. Required.
+        The text description: what the picture shows. Required.
     view : array of shape ``(3, 3)``
         ${}^V\mathbf{C}^N$, for instance from `looking_down` or `view_from`.
     scale : float
@@ -170,8 +170,9 @@ class Drawing(Words):
         size=20,
         kind="",
     ):
-        """Draw an arrow from ``start`` to ``end``, with a label ``shift`` from the tip or beyond
-        it.
+        """Draw an arrow from ``start`` to ``end``.
+
+        The label is ``shift`` from the tip or beyond it.
 
         An arrow that points straight at the reader is a circle with a dot, one that points straight
         away a circle with a cross. An arrow with a ``bow`` curves to its left by so many pixels,
@@ -261,7 +262,7 @@ class Drawing(Words):
 
 
 def collapsed(mark):
-    """Return whether a mark is a path of a single point, as the far sides of bodies are."""
+    """Check whether a mark is a path of a single point, as the far sides of bodies are."""
     return isinstance(mark[1], str) and np.ptp(mark[2], axis=0).max() < 1e-6
 
 

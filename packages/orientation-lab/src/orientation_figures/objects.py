@@ -45,11 +45,11 @@ def plane_drawing(axis, angle, first="N", second="A", name="theta", components=F
     angle : float
         Radians.
     first, second : str
-        Letters of the two frames: the second is turned from the first.
+        Letters of the two frames; the second is rotated from the first.
     name : str
-        The Greek letter of the angle, such as 'theta'; 'phi' is set as in the text.
+        The Greek letter of the angle, such as 'theta'; 'phi' is typeset as in the text.
     components : bool
-        Whether the tips are dropped onto the arrows of the first frame, and their feet marked.
+        Whether to drop the tips onto the arrows of the first frame, and to mark their feet.
 
     Returns
     -------

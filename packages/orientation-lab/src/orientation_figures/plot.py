@@ -51,7 +51,7 @@ class Plot:
     Parameters
     ----------
     alt : str
-        The text that stands for the picture: it says what the curves do. Required.
+        The text description: what the curves do. Required.
     width, height : float
         Size in pixels; on a narrow page the plot shrinks as a whole.
     rows : int
@@ -223,5 +223,5 @@ def _short_path(path):
 
 
 def _along(step, before, axis):
-    """Whether two steps have the same direction along one axis, so that they can be merged."""
+    """Check whether two steps along one axis have the same direction, and so can be merged."""
     return step[1 - axis] == before[1 - axis] == 0 and step[axis] * before[axis] >= 0

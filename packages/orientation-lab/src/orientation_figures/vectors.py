@@ -13,7 +13,7 @@ degrees = math.degrees
 
 
 def in_degrees(angle):
-    """Say an angle in whole degrees, as texts for screen readers do: '1 degree', '71 degrees'."""
+    """Return an angle in whole degrees for screen readers: '1 degree', '71 degrees'."""
     number = round(degrees(angle))
     return f"{number} degree{'s' * (abs(number) != 1)}"
 

@@ -24,8 +24,10 @@ HEADS = {
     "F": DIAMOND,
     "Z": TRIANGLE,
 }
-ROUND = 0.5523  # a cubic with its inner points this far along the tangents is a quarter of a circle
-STEEP = 1.6  # radians that one cubic of an arc can have
+# A cubic whose inner points are this far along the tangents is a quarter of a circle.
+ROUND = 0.5523
+# The largest angle of an arc, in radians, for one cubic.
+STEEP = 1.6
 
 
 def hatted(letter):
@@ -125,8 +127,9 @@ class Words:
     # Arrows and frames.
 
     def arrow(self, end, start=(0, 0, 0), colour="ink", label="", shift=None, size=20, kind=""):
-        """Draw an arrow from ``start`` to ``end``, with a label ``shift`` from the tip or beyond
-        it.
+        """Draw an arrow from ``start`` to ``end``.
+
+        The label is ``shift`` from the tip or beyond it.
 
         An arrow that points straight at the reader is a circle with a dot, one that points straight
         away a circle with a cross.

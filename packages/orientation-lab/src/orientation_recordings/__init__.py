@@ -1,16 +1,15 @@
-"""What real instruments recorded: five small boxes with gyroscopes,
-carried by hands and by a walking leg.
+"""Recordings of real instruments: five small boxes with gyroscopes, in hands and on a walking leg.
 
 The files in ``data/`` are excerpts from the recordings that come with *scikit-kinematics* 0.10.4 by
 Thomas Haslwanter (BSD licence; its text is in ``data/LICENSE.txt``): the x-IMU's packets 115 to
 6354 (of its matrices one second, 2845 to 3234), the rows 37328 to 39007 of the leg, all rows of the
 others, without the columns that the book does not use. Every digit is the instrument's. The
-functions here give them with times in seconds, angular velocities in radians per second and
+functions here return them with times in seconds, angular velocities in radians per second and
 specific forces in multiples of standard gravity; quaternions and angles stay as they were printed.
 
-Beside them stand the directions of bright stars, as the satellite Hipparcos measured them (ESA
-1997), in the table that comes with *PyEphem* 4.2.1 by Brandon Rhodes (MIT licence; its text is in
-``data/LICENSE-stars.txt``), each star once, under the name that astronomers have agreed on.
+The directions of bright stars, as measured by the satellite Hipparcos (ESA 1997), are from the
+table that comes with *PyEphem* 4.2.1 by Brandon Rhodes (MIT licence; its text is in
+``data/LICENSE-stars.txt``), with each star once, under its official name.
 """
 
 from __future__ import annotations
@@ -27,30 +26,29 @@ Array: TypeAlias = "NDArray[np.float64]"
 
 #: Metres per second squared.
 STANDARD_GRAVITY = 9.80665
-#: Samples per second. The x-IMU's follows from the value 9 of its register
+#: Samples per second. For the x-IMU, this follows from the value 9 of its register
 #: ``InertialAndMagneticDataRate``, which means 256.
 X_IMU_RATE, XSENS_RATE, WALKING_RATE = 256, 50, 120
 
 
 class Recording(NamedTuple):
-    """What one instrument measured, sample by sample, and the
-    orientation that it worked out itself.
+    """The measurements of one instrument, with the orientation that it computed itself.
 
     Attributes
     ----------
     time : array of shape ``(n,)``
         Seconds since the first sample.
     angular_velocity : array of shape ``(n, 3)``
-        Of the instrument, along its own axes, radians per second.
+        Of the instrument, along its own axes, in radians per second.
     specific_force : array of shape ``(n, 3)``
-        What the accelerometer feels, along its own axes, in multiples of standard gravity: at rest,
-        up.
+        The accelerometer's measurement, along its own axes, in multiples of standard gravity; at
+        rest it points up.
     magnetic_field : array of shape ``(n, 3)`` or ``None``
-        Along the instrument's axes, in the unit that it prints.
+        Along the instrument's axes, in the unit of its output.
     quaternion_time : array of shape ``(m,)``
         Seconds.
     quaternion : array of shape ``(m, 4)``
-        As the instrument prints it, divided by its length; empty where it prints none.
+        The instrument's output, divided by its length; empty if it has none.
     """
 
     time: Array
@@ -62,14 +60,15 @@ class Recording(NamedTuple):
 
 
 def table(name: str) -> Array:
-    """Give the rows of a file of ``data/`` as an array, without the line of column names."""
+    """Return the rows of a file in ``data/`` as an array, without the line of column names."""
     with resources.files(__package__).joinpath("data", f"{name}.csv").open(encoding="utf8") as file:
         return np.loadtxt(file, delimiter=",", skiprows=1)
 
 
 def x_imu() -> Recording:
-    """Give sixteen seconds of an x-IMU in a hand: held, carried about,
-    held. It printed on memory card.
+    """Return sixteen seconds of an x-IMU in a hand: held, carried about, held again.
+
+    It recorded on its memory card.
 
     Returns
     -------
@@ -89,7 +88,7 @@ def x_imu() -> Recording:
 
 
 def x_imu_time(packets: Array) -> Array:
-    """Give the time of packets of the x-IMU: that of the last sample of its sensors before each.
+    """Return the times of packets of the x-IMU: each is that of the last sensor sample before it.
 
     Parameters
     ----------
@@ -105,7 +104,7 @@ def x_imu_time(packets: Array) -> Array:
 
 
 def x_imu_euler_angles() -> Array:
-    """Give the angles that the x-IMU printed beside each of its quaternions.
+    """Return the angles that the x-IMU printed beside each of its quaternions.
 
     Returns
     -------
@@ -116,7 +115,7 @@ def x_imu_euler_angles() -> Array:
 
 
 def x_imu_rotation_matrix() -> tuple[Array, Array]:
-    """Give a second of the nine numbers that the x-IMU printed as its rotation matrix.
+    """Return one second of the nine numbers that the x-IMU printed as its rotation matrix.
 
     Returns
     -------
@@ -128,7 +127,7 @@ def x_imu_rotation_matrix() -> tuple[Array, Array]:
 
 
 def x_imu3() -> Recording:
-    """Give ten seconds of an x-IMU3, a later instrument of the same maker, turned quickly by hand.
+    """Return ten seconds of an x-IMU3, a later instrument by the same maker, rotated fast by hand.
 
     Returns
     -------
@@ -148,7 +147,7 @@ def x_imu3() -> Recording:
 
 
 def ngimu() -> Recording:
-    """Give ten seconds of an NGIMU, turned by hand.
+    """Return ten seconds of an NGIMU, rotated by hand.
 
     Returns
     -------
@@ -167,7 +166,7 @@ def ngimu() -> Recording:
 
 
 def xsens() -> Recording:
-    """Give nineteen seconds of an instrument of Xsens.
+    """Return nineteen seconds of an Xsens instrument.
 
     Returns
     -------
@@ -187,13 +186,12 @@ def xsens() -> Recording:
 
 
 def walking_leg() -> tuple[Recording, Recording]:
-    """Give fourteen seconds of two instruments on one leg: two seconds of standing, then walking.
+    """Return fourteen seconds of two instruments on a leg: two of standing still, then walking.
 
     Returns
     -------
     tuple of two `Recording`
-        Thigh and shank, 120 samples a second, sample for sample at the same times, without
-        quaternions.
+        Thigh and shank, 120 samples a second at the same times, without quaternions.
     """
     return _of_the_leg("upper_leg"), _of_the_leg("lower_leg")
 
@@ -206,7 +204,7 @@ def _of_the_leg(name: str) -> Recording:
 
 
 def bright_stars() -> tuple[list[str], Array, Array]:
-    """Give the directions of bright stars at the beginning of the year 2000.
+    """Return the directions of bright stars at the beginning of the year 2000.
 
     Returns
     -------

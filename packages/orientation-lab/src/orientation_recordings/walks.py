@@ -1,4 +1,4 @@
-"""Simulated walks with a telephone in the hand, past a parked car, with the truth beside them."""
+"""Simulated walks with a phone in the hand, past a parked car, with the true orientations."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 STEP = 0.04
-#: In seconds. The phone lies on a table until somebody picks it up, and the way leads past the car.
+#: In seconds. The phone is on a table until somebody picks it up, and later passes the car.
 TAKEN, CAR = 8.0, (28.0, 33.0)
 #: The parameters that may differ from walk to walk, besides the noise and the gyroscope's bias.
 EVERYTHING = frozenset({"step", "look", "pose", "side"})
@@ -29,22 +29,22 @@ _USUAL_POSE = dcm_from_body_fixed(np.radians([70, 20, -35]), "zxy")
 
 
 class Walks(NamedTuple):
-    """What telephones report on walks, and how they are truly oriented.
+    """What phones measure on walks, and their true orientations.
 
     Attributes
     ----------
     time : array of shape ``(n,)``
         Seconds.
     angular_velocity : array of shape ``(count, n, 3)``
-        Along the telephone, radians per second.
+        Along the phone's axes, in radians per second.
     specific_force : array of shape ``(count, n, 3)``
-        Along the telephone, in multiples of gravity.
+        Along the phone's axes, in multiples of gravity.
     magnetic_field : array of shape ``(count, n, 3)``
-        Along the telephone, in microtesla.
+        Along the phone's axes, in microtesla.
     dcms : array of shape ``(count, n, 3, 3)``
-        ``P_C_E``: the telephone with respect to a ground with x north, y west and z up.
+        ``P_C_E``, the phone relative to a ground with x north, y west and z up.
     bias : array of shape ``(count, 3)``
-        Of the gyroscope, radians per second.
+        The gyroscope's bias, in radians per second.
     """
 
     time: Array
@@ -69,12 +69,12 @@ def walks(
     count : int
     random : numpy.random.Generator or int
     varied : collection of str, optional
-        What differs from walk to walk: where in a step it begins ("step"), when the owner looks
-        around ("look"), how the telephone is held ("pose"), on which side the car stands ("side").
+        What differs from walk to walk: the phase of the first step ("step"), when the owner looks
+        around ("look"), how the phone is held ("pose"), on which side the car is ("side").
     steel : float, optional
-        Microtesla that the car adds, level; 0 for no car.
+        The horizontal field that the car adds, in microtesla; 0 for no car.
     gradual : bool, optional
-        Whether the steel's field rises and falls as one walks past, and not at once.
+        Whether the steel's field rises and falls gradually on the way past, not at once.
 
     Returns
     -------

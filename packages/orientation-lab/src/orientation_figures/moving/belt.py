@@ -1,4 +1,4 @@
-"""The belt trick: one full rotation leaves a twist that stays, two full rotations leave none."""
+"""The belt trick: one full rotation leaves a twist in the belt, two leave none."""
 
 import math
 
@@ -12,20 +12,20 @@ FULL = 4 * math.pi
 
 
 class BeltFigure(MovingFigure):
-    r"""A plate that hangs on a wall by a belt, and is turned about the belt's own line.
+    r"""A plate that hangs on a wall by a belt, and rotates about the belt's own line.
 
     Along the belt the orientation goes from that of the wall to that of the plate, as a curve of
-    quaternions from 1 to $q$. After one full turn it ends at $-1$, after two at 1. Then the belt
-    can be passed round the plate while the plate is held: after two full turns that takes the twist
-    out, after one it only reverses it.
+    quaternions from 1 to $q$. After one full rotation it ends at $-1$, after two at 1. Then the
+    belt can be passed round the plate while the plate is held. After two full rotations this
+    removes the twist; after one it only reverses it.
 
     Attributes
     ----------
     angle : float
-        What the plate has been turned by, radians from 0 to $4\pi$.
+        The plate's angle of rotation, in radians from 0 to $4\pi$.
     passed : float
         How far the belt has been passed round the plate, from 0 to 1. It counts only after one or
-        two full turns.
+        two full rotations.
 
     Examples
     --------

@@ -14,29 +14,29 @@ from .state import Turns
 
 
 class ChallengeFigure(MovingFigure):
-    r"""A box with the frame $A$, which the reader turns about its own axes to a goal.
+    r"""A box with the frame $A$, which the reader rotates about its own axes to a goal.
 
-    In the task 'match' the goal is an orientation of which only the matrix is shown. In 'undo' the
-    box has been turned, and the goal is where it came from, $N$. In 'ghost' a ghost has made three
-    turns through angles that are told, about axes that are not. How well it is done is said by the
-    angle that remains.
+    In the task 'match' the goal is an orientation shown only by its matrix. In 'undo' the box has
+    been rotated, and the goal is where it came from, $N$. In 'ghost' a ghost has made three
+    rotations through known angles about unknown axes. The remaining angle shows how close the
+    reader is.
 
     Attributes
     ----------
     task : {'match', 'undo', 'ghost'}
     given : tuple of one to three pairs
-        The turns of the challenge, each an axis 'x', 'y' or 'z' and an angle in radians: of the
-        goal in 'match' and 'ghost', and in 'undo' those that are to be undone.
+        The rotations of the challenge, each an axis 'x', 'y' or 'z' and an angle in radians: those
+        to the goal in 'match' and 'ghost', and those to undo in 'undo'.
     turns : tuple of at most 20 pairs
-        The reader's own turns, each about a unit vector of the box (body fixed).
+        The reader's own rotations, each about a unit vector of the box (body fixed).
     goal : array_like, shape (3, 3)
-        Direction cosine matrix of the goal with respect to N. In 'match' it can be set, which makes
-        ``given`` three turns that lead there.
+        Direction cosine matrix of the goal with respect to N. In 'match' it can be set, which sets
+        ``given`` to three rotations that lead there.
 
     Raises
     ------
     ValueError
-        If a goal that is set is no direction cosine matrix, or the task is not 'match'.
+        If you set a goal that is not a direction cosine matrix, or the task is not 'match'.
 
     Examples
     --------
@@ -45,7 +45,7 @@ class ChallengeFigure(MovingFigure):
     >>> round(figure.remaining, 6)
     0.5
 
-    A matrix of one's own as the goal:
+    Use your own matrix as the goal:
 
     >>> figure = ChallengeFigure(goal=[[0, 1, 0], [0, 0, 1], [1, 0, 0]])
     >>> round(figure.remaining, 6)

@@ -11,17 +11,17 @@ from .state import Numbers
 class CloudFigure(MovingFigure):
     r"""Orientations about an estimate, with Gaussian errors along the ground or along the body.
 
-    Drawn are the tips of $\hat{b}_x$ and $\hat{b}_z$ of each. The axis with the large errors stands
-    still along the ground, or turns with the body.
+    The tips of $\hat{b}_x$ and $\hat{b}_z$ of each are drawn. The axis with the large errors is
+    fixed to the ground or to the body.
 
     Attributes
     ----------
     large : float
-        Standard deviation about z, radians, up to a third of a turn.
+        Standard deviation about z in radians, up to a third of a turn.
     small : float
-        Standard deviation about x and about y, radians.
+        Standard deviation about x and about y in radians.
     side : str
-        Along which frame the errors have these deviations, 'ground' or 'body'.
+        The frame in which the errors have these deviations, 'ground' or 'body'.
 
     Examples
     --------

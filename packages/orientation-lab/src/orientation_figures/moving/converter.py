@@ -26,7 +26,7 @@ FIRST = {
     "scalar": "first",
     "unit": "radians",
 }
-# The camera in its gimbal that the whole chapter is about: 0.4, 0.7 and -0.3 rad, body fixed z-x-y.
+# The camera in its gimbal from the whole chapter: 0.4, 0.7 and -0.3 rad, body fixed z-x-y.
 AT_FIRST = (0.9204901330363197, 0.3601778830129209, -0.07022156093803689, 0.13430837632305287)
 
 
@@ -91,7 +91,7 @@ class ConverterFigure(MovingFigure):
     quaternion : tuple of four floats
         The orientation that both sides describe: ${}^A\mathbf{C}^N$ as a quaternion, scalar first.
     source, target : dict
-        For each side ``program``, one of those in ``orientation_workbench.programs``; ``form``;
+        For each side, ``program``, one of those in ``orientation_workbench.programs``; ``form``;
         ``sequence``; and for another program ``matrix``, ``scalar`` and ``unit``.
 
     Examples

@@ -57,8 +57,7 @@ class SequenceExplorer(anywidget.AnyWidget):
     sequence : str
         One of the twelve sequences.
     angles : three strings, numbers or SymPy expressions
-        Radians: symbols, numbers, or expressions such as ``'pi/6'``. They are kept as they are
-        typed.
+        Radians: symbols, numbers, or expressions such as ``'pi/6'``, kept as they are typed.
     fixed : {'body', 'space'}
         Whether the rotations are about axes of the rotated frame or of the fixed frame.
 
@@ -246,7 +245,7 @@ def _tex(value):
 
 
 def _mathml(value):
-    """Return MathML without the brackets round a single symbol, as ``fold_func_brackets`` does."""
+    """Return MathML without the brackets around a single symbol, as ``fold_func_brackets`` does."""
     text = mathml(_rounded(value), printer="presentation").replace("<mi>varphi</mi>", "<mi>φ</mi>")
     text = text.replace("<mn>-", "<mn>−")
     text = re.sub(r"<mrow><mo>\(</mo>(<m[in]>[^<]+</m[in]>)<mo>\)</mo></mrow>", rf"{SPACE}\1", text)

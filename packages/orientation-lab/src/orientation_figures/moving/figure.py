@@ -114,7 +114,7 @@ class MovingFigure(anywidget.AnyWidget):
 
 
 def stills_can_be_drawn():
-    """Return whether NumPy and Matplotlib are available."""
+    """Check whether NumPy and Matplotlib are available."""
     # Look for them instead of importing them in vain. If they are missing, as in a browser, the
     # front end shows the figure without a still. If they are there, no error of a still must be
     # lost.

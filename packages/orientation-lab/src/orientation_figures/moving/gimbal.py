@@ -15,9 +15,9 @@ from .state import Numbers, Sequence
 class GimbalFigure(MovingFigure):
     r"""A camera gimbal: handgrip $A$, two rings $B$ and $C$, camera $D$.
 
-    Each joint turns what it carries about one axis, in the order of the sequence, so that the
-    angles are body fixed Euler angles. Near gimbal lock the figure says which two sliders turn
-    about one line.
+    Each joint rotates what it carries about one axis, in the order of the sequence, so that the
+    angles are body fixed Euler angles. Near gimbal lock the figure says which two sliders rotate
+    about the same line.
 
     Attributes
     ----------
@@ -26,14 +26,14 @@ class GimbalFigure(MovingFigure):
     sequence : str
         One of the twelve sequences.
     more : bool
-        Whether gimbal lock, and the choice of the sequence, are shown.
+        Whether to show gimbal lock and the choice of the sequence.
     dcm : array_like, shape (3, 3)
-        The matrix of the camera; setting it sets the angles, for the sequence that there is.
+        The matrix of the camera; setting it sets the angles for the current sequence.
 
     Raises
     ------
     ValueError
-        If a matrix that is set is no direction cosine matrix.
+        If you set a matrix that is not a direction cosine matrix.
 
     Examples
     --------

@@ -21,7 +21,7 @@ LABELS = (
     *(rf"\hat{{u}}_{number}" for number in "12"),
     *(rf"\mathbf{{v}}{primes}" for primes in ("", "'", "''")),
     *"NABCDtxyz",
-    # Between any two of the frames of a tree.
+    # Matrices between any two of the frames of a tree.
     *(rf"{{}}^{target}\mathbf{{C}}^{source}" for target in "NABCDE" for source in "NABCDE"),
     r"\alpha",
     r"\beta",

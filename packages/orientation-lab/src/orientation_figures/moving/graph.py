@@ -47,16 +47,16 @@ class Edges(traitlets.TraitType):
 
 
 class GraphFigure(MovingFigure):
-    r"""A tree of frames, each turned in another about a unit vector that both share.
+    r"""A tree of frames, each rotated from another about a unit vector that both share.
 
-    The reader adds frames, turns them, and asks for the matrix between any two: it is the product
-    over the path from one to the other, some of its factors transposed.
+    The reader adds frames, rotates them, and selects a matrix between any two. It is the product
+    over the path from one to the other, with some factors transposed.
 
     Attributes
     ----------
     edges : tuple of one to five tuples
-        ``(frame, reference, axis, angle)``: a new frame, one that is there already, 'x', 'y' or
-        'z', and an angle in radians, from $-\pi$ to $\pi$. The first frame is ``'N'``.
+        ``(frame, reference, axis, angle)``: a new frame, an existing one, 'x', 'y' or 'z', and an
+        angle in radians, from $-\pi$ to $\pi$. The first frame is ``'N'``.
     target, source : str
         The two frames whose matrix is shown.
 

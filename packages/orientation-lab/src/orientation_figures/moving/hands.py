@@ -11,15 +11,15 @@ from .state import Direction
 class HandsFigure(MovingFigure):
     r"""A right-handed triad $N$, and its mirror image or a copy, which the reader rotates.
 
-    The angles between the arrows of the same name are shown. A copy can be brought onto $N$. Of the
-    mirror image two arrows can fit, and then the third points the wrong way.
+    The angles between arrows of the same name are shown. A copy can be brought onto $N$. Of the
+    mirror image only two arrows can fit, and then the third points the wrong way.
 
     Attributes
     ----------
     image : {'mirror', 'copy'}
     quaternion : tuple of four floats
-        The turn that the image has made, scalar first. Any four numbers but zeros may be given;
-        they are kept at unit length.
+        The rotation of the image, scalar first. Any four numbers but zeros may be given; they are
+        kept at unit length.
     together : bool
         Whether the image is drawn over $N$, or beside it.
 

@@ -7,7 +7,8 @@ from .pictures import motion as pictures
 from .pictures.motion import COLOURS, MOMENTS, SECONDS, body_of
 from .state import Numbers
 
-PLOT = (-180, 0, 180, 356)  # left, top, right and bottom
+# Left, top, right and bottom.
+PLOT = (-180, 0, 180, 356)
 
 
 class Between(Numbers):
@@ -49,35 +50,35 @@ class Moments(Numbers):
 class MotionFigure(MovingFigure):
     r"""A freely tumbling body, integrated in three descriptions with or without restoring steps.
 
-    The body spins with 4 rad/s about one of its principal axes, slightly disturbed. Its orientation
-    is carried along as a direction cosine matrix, as a quaternion and as Euler angles in the
-    sequence $z$-$x$-$y$. Each is given one and the same angular velocity, which is found in steps
-    ten times finer; what they differ in is their own. One of them is drawn, and dashed the
-    reference, a quaternion integrated in the finer steps. Plots show how the drift grows.
+    The body spins at 4 rad/s about one of its principal axes, slightly disturbed. Its orientation
+    is integrated as a direction cosine matrix, as a quaternion and as Euler angles in the sequence
+    $z$-$x$-$y$. All three use the same angular velocity, computed in steps ten times finer, so that
+    they differ only by their own errors. One of them is drawn, with the reference dashed, which is
+    a quaternion integrated in the finer steps. Plots show how the drift grows.
 
     Attributes
     ----------
     moments : tuple of three floats
         The principal moments of inertia about $\hat{a}_x$, $\hat{a}_y$ and $\hat{a}_z$, from 0.1 to
-        20 g m², none larger than the sum of the others. A racket is drawn for its own, otherwise
-        the uniform block that has them.
+        20 g m², none larger than the sum of the others. A racket is drawn for its own moments,
+        otherwise the uniform block that has them.
     axis : str
-        The principal axis that it spins about, 'x', 'y' or 'z'.
+        The principal axis of the spin, 'x', 'y' or 'z'.
     disturbance : float
         Angular velocity about the two other axes at the start, 0 to 0.5 rad/s.
     method : str
-        'Euler', 'Runge-Kutta' (of fourth order) or 'exponential', which turns matrix and quaternion
-        by the rotation vector of each step (Magnus, of fourth order). Euler angles have no such
-        step, and take Runge-Kutta's.
+        'Euler', 'Runge-Kutta' (of fourth order) or 'exponential', which rotates matrix and
+        quaternion by the rotation vector of each step (Magnus, of fourth order). Euler angles have
+        no such step, and use Runge-Kutta.
     step : float
         From 0.005 to 0.1 seconds.
     restored : bool
-        Whether after every step the matrix is replaced by the nearest orthogonal one, and the
-        quaternion divided by its length.
+        Whether each step ends by replacing the matrix by the nearest orthogonal one, and dividing
+        the quaternion by its length.
     description : str
-        Which one is drawn: 'matrix', 'quaternion' or 'angles'.
+        The description that is drawn: 'matrix', 'quaternion' or 'angles'.
     time : float
-        From 0 to 20 seconds. The figure computes up to here, and further as the reader plays it.
+        From 0 to 20 seconds. The figure computes up to this time, and further as it plays.
 
     Examples
     --------

@@ -9,14 +9,13 @@ from .state import Numbers
 class NineNumbersFigure(MovingFigure):
     r"""Nine numbers, seen as three row vectors, against the nearest direction cosine matrix.
 
-    The reader edits the numbers or drags the arrows. The figure says which of the conditions fails,
-    rows of unit length, right angles, right-handed, in the words of `orientation.check_dcm`.
+    The reader edits the numbers or drags the arrows. The figure says which of the conditions fails
+    (unit rows, right angles, right-handed), in the words of `orientation.check_dcm`.
 
     Attributes
     ----------
     matrix : three tuples of three floats
-        Any numbers from -10 to 10; that they are no direction cosine matrix is what the figure is
-        about.
+        Any numbers from -10 to 10; they need not form a direction cosine matrix.
 
     Examples
     --------

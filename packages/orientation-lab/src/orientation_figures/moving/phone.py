@@ -12,10 +12,10 @@ from .state import Numbers
 class PhoneFigure(MovingFigure):
     r"""A phone $B$, and the ground $N$ with axes to the east, the north and upwards.
 
-    On a phone the figure asks for its sensors when a button is pressed, and follows it; nothing is
-    sent anywhere. The angles are those that browsers report: body fixed z-x-y, from the ground to
-    the phone, whose $\hat{b}_x$ points to the right across the screen, $\hat{b}_y$ to its top and
-    $\hat{b}_z$ out of it.
+    On a phone, at the press of a button, the figure asks for access to its sensors and follows
+    them; nothing is sent anywhere. The angles are those that browsers report: body fixed z-x-y,
+    from the ground to the phone, whose $\hat{b}_x$ points to the right across the screen,
+    $\hat{b}_y$ to its top and $\hat{b}_z$ out of it.
 
     Attributes
     ----------

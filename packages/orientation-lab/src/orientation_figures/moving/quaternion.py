@@ -36,7 +36,7 @@ class QuaternionFigure(MovingFigure):
     ----------
     view : {'double', 'way'}
     more : bool
-        Whether $-q$ is shown beside $q$, and the views can be exchanged.
+        Whether to show $-q$ beside $q$, and to offer both views.
     axis : tuple of three floats
         Direction of $\hat{e}$, normalised.
     angle : float

@@ -13,8 +13,8 @@ from .state import Numbers
 class SimpleFigure(MovingFigure):
     r"""A frame $A$, rotated in $N$ about $x$, $y$ or $z$.
 
-    Three views move together: the triads in space, the same down the shared unit vector, and
-    ${}^A\mathbf{C}^N$. A number that is touched lights up the shadow that it measures.
+    Three views move together: the triads in space, the same seen down the shared unit vector, and
+    ${}^A\mathbf{C}^N$. Touching a number highlights the projection that it measures.
 
     Attributes
     ----------

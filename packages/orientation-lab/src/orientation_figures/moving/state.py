@@ -17,9 +17,9 @@ class Numbers(traitlets.TraitType):
     shape : tuple
         ``()`` for one number, ``(3,)`` for a vector, ``(3, 3)`` for a matrix.
     largest : float, optional
-        No number may be larger than this.
+        The largest allowed number.
     smallest : float, optional
-        Or smaller than this; as it stands, the negative of ``largest``.
+        The smallest allowed number, by default the negative of ``largest``.
     """
 
     info_text = "real numbers"

@@ -15,29 +15,30 @@ from .state import Numbers, Turns
 class SuccessiveFigure(MovingFigure):
     r"""A chain of up to four simple rotations from $N$ to $D$.
 
-    Beside the frames stand the matrices of the turns and their product. With body fixed turns the
-    newest stands on the left,
+    Beside the frames are the matrices of the rotations and their product. With body fixed rotations
+    the newest is on the left,
 
     $$
     {}^D\mathbf{C}^N = {}^D\mathbf{C}^C\,{}^C\mathbf{C}^B\,{}^B\mathbf{C}^A\,{}^A\mathbf{C}^N ,
     $$
 
-    with turns about the axes of $N$ on the right. A second chain can be drawn beside the first,
-    with two neighbouring turns exchanged or of the other kind; its end is the frame $E$.
+    and with rotations about the axes of $N$ it is on the right. A second chain can be drawn beside
+    the first, with two neighbouring rotations exchanged or of the other kind; its end is the frame
+    $E$.
 
     Attributes
     ----------
     turns : tuple of pairs
-        One to four turns, each an axis 'x', 'y' or 'z' and an angle in radians, from $-\pi$ to
+        One to four rotations, each an axis 'x', 'y' or 'z' and an angle in radians, from $-\pi$ to
         $\pi$.
     fixed : {'body', 'space'}
-        Whether each turn is about a unit vector of the frame before it, or about one of $N$.
+        Whether each rotation is about a unit vector of the frame before it, or about one of $N$.
     compare : str
-        What the second chain is: one of `COMPARISONS`.
+        The second chain, one of `COMPARISONS`.
     more : bool
-        Whether turns about the axes of $N$ and the other second chains can be chosen.
+        Whether to offer rotations about the axes of $N$ and the other second chains.
     share : float
-        How much of the chain has been gone through, from 0 to 1.
+        The completed share of the chain, from 0 to 1.
 
     Examples
     --------

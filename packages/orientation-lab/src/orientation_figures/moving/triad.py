@@ -18,10 +18,10 @@ from .state import Direction, Numbers, Sequence
 
 
 class TriadFigure(MovingFigure):
-    r"""A triad $A$, turned in $N$ through an angle about an axis.
+    r"""A triad $A$, rotated in $N$ through an angle about an axis.
 
-    Beside the drawing stand ${}^A\mathbf{C}^N$, Euler angles, axis and angle, and the quaternion of
-    the same orientation. A number that is touched lights up what it means.
+    Beside the drawing are ${}^A\mathbf{C}^N$, Euler angles, axis and angle, and the quaternion of
+    the same orientation. Touching a number highlights its meaning.
 
     Attributes
     ----------
@@ -31,16 +31,17 @@ class TriadFigure(MovingFigure):
     angle : float
         Radians, from $-\pi$ to $\pi$.
     sequence : str
-        Which of the twelve sequences the Euler angles belong to.
+        The sequence of the Euler angles, one of the twelve.
     more : bool
-        Whether the descriptions other than the matrix are shown.
+        Whether to show the descriptions other than the matrix.
     dcm, quaternion
-        The same orientation in other words; setting one sets ``axis`` and ``angle``.
+        The same orientation in other descriptions; setting one sets ``axis`` and ``angle``.
 
     Raises
     ------
     ValueError
-        If a matrix that is set is no direction cosine matrix, or a quaternion not of unit length.
+        If you set a matrix that is not a direction cosine matrix, or a quaternion not of unit
+        length.
 
     Examples
     --------
@@ -50,7 +51,7 @@ class TriadFigure(MovingFigure):
     >>> figure.axis, figure.dcm[0, 1].round(6).item()
     ((0.0, 0.0, 1.0), 0.479426)
 
-    A matrix of one's own:
+    Set your own matrix:
 
     >>> figure.dcm = [[0, 1, 0], [0, 0, 1], [1, 0, 0]]
     >>> round(figure.angle, 6)

@@ -11,9 +11,12 @@ from orientation.euler_angles import dcm_from_body_fixed
 from orientation.quaternions import dcm_from_quaternion, multiply_quaternions
 from orientation.rotation_vector import dcm_from_rotation_vector
 
-SPIN = 4.0  # rad/s
-FINER = 10  # steps of the reference for one step of a description
-LARGEST = 1e4  # numbers beyond this end a run
+# In radians per second.
+SPIN = 4.0
+# Steps of the reference for each step of a description.
+FINER = 10
+# A run ends at numbers beyond this.
+LARGEST = 1e4
 
 
 # The points of a step at which the fourth-order exponential step evaluates the rate.

@@ -1,4 +1,4 @@
-"""Two programs disagree: what both gave is pasted, and the mix-up is named."""
+"""Two programs disagree: the reader pastes the numbers of both, and the figure names the mix-up."""
 
 import json
 

@@ -27,7 +27,7 @@ FINE = 2
 
 
 def _net(rows, columns, at):
-    """Quadrilaterals of a net of points, shape ``(rows * columns, 4, 3)``."""
+    """Return the quadrilaterals of a net of points, of shape ``(rows * columns, 4, 3)``."""
     grid = at(
         *np.meshgrid(np.linspace(0, 1, rows + 1), np.linspace(0, 1, columns + 1), indexing="ij")
     )

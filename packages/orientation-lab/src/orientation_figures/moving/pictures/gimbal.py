@@ -12,7 +12,8 @@ INNER = 0.76
 CAMERA = (0.62, 0.44, 0.46)
 END = 1.42
 SIZE = 98
-INSET = (1.4, 1.1)  # the triads of A and D, right and up
+# The position of the triads of A and D, right and up.
+INSET = (1.4, 1.1)
 SYMBOLS = (r"$\psi$", r"$\theta$", r"$\varphi$")
 
 
@@ -55,7 +56,8 @@ def picture(sheet, gimbal, close=False, lit=None):
         for side in [1, -1]:
             arm = scale(side, axis)
             sheet.layer = layer * near(arm)
-            if colour == "B" or side < 0 or at[2] != 1:  # not before the lens
+            # Leave out the arm in front of the lens.
+            if colour == "B" or side < 0 or at[2] != 1:
                 sheet.line([scale(start, arm), scale(end, arm)], colour, "tube slim")
     # The lens looks along d_y, as in the essay.
     sheet.layer = 0

@@ -9,8 +9,10 @@ from ...vectors import AXES, IDENTITY, add, cross, dot, length, scale, subtract,
 # of its face. The book's a_x runs along its long edges.
 MOMENTS = {"racket": (1.2, 16.0, 17.0), "book": (6.9, 13.3, 19.7)}
 SECONDS = 20.0
-SAMPLE = 0.1  # seconds between two points of a curve
-ROUNDING = 1e-15  # smaller values are the rounding of one processor, and are drawn here
+# Seconds between two points of a curve.
+SAMPLE = 0.1
+# Smaller values are rounding errors, which depend on the processor, and are drawn here.
+ROUNDING = 1e-15
 SIZE = 118
 # The largest length of an arrow.
 LONGEST = 1.25

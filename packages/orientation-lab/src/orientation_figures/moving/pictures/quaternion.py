@@ -21,13 +21,13 @@ from ...vectors import (
 SIZE = 96  # of the first picture, and of the second:
 BALL = 104
 KNOB = 1.32
-# Of the circle beside the triads, in pixels.
+# The circle beside the triads, in pixels.
 MIDDLE = (142, 130)
 RADIUS = 70
 SECONDS = 4
 SAMPLES = 60
 WAYS = ("C", "D", "E")
-# Of the plot below the ways.
+# The plot below the ways.
 LEFT = -120
 RIGHT = 150
 TOP = 144

@@ -4,7 +4,7 @@ from ...vectors import AXES, IDENTITY, add, in_degrees, scale
 
 REACH = 1.25
 SIZE = 112
-# Along the pointer and up.
+# The vane's corners, along the pointer and up.
 VANE = (
     (-0.72, 0.5), (-0.5, 0.36), (0.4, 0.36), (0.4, 0.46), (0.68, 0.3),
     (0.4, 0.14), (0.4, 0.24), (-0.5, 0.24), (-0.72, 0.1), (-0.62, 0.3),
@@ -14,7 +14,7 @@ VANE = (
 def picture(sheet, k, angle, dcm):
     """Draw the rotation; ``k`` is the index of the shared unit vector."""
     axis, pointer = IDENTITY[k], dcm[(k + 1) % 3]
-    # The vane, upright on the shared unit vector; looking down that, it is seen edge on.
+    # The vane is upright on the shared unit vector, and seen edge-on when looking down that vector.
     sheet.area([add(scale(along, pointer), scale(up, axis)) for along, up in VANE], "A", 26)
     sheet.triad("N", IDENTITY, length=REACH)
     for m in [(k + 1) % 3, (k + 2) % 3]:

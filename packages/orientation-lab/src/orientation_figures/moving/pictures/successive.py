@@ -1,4 +1,4 @@
-"""The picture of a chain of simple turns."""
+"""The picture of a chain of simple rotations."""
 
 import math
 
@@ -7,8 +7,10 @@ from orientation.axis_angle import axis_angle_from_dcm
 from ...vectors import AXES, IDENTITY, in_degrees, multiply, scale, times, transpose
 from .common import around, chain, partly
 
-REACH = 1.25  # of the arrows of N
-BEFORE = 0.66  # of the frames before the last
+# The length of the arrows of N.
+REACH = 1.25
+# The length of the arrows of the frames before the last.
+BEFORE = 0.66
 SIZE = 96
 LETTERS = "NABCD"
 COMPARISONS = (

@@ -3,8 +3,10 @@
 from ...vectors import IDENTITY, in_degrees, scale
 from .common import around
 
-REACH = 1.25  # of the arrows of N
-KNOB = 1.55  # of the line of the axis: labels keep clear of those of A
+# The length of the arrows of N.
+REACH = 1.25
+# The end of the line of the axis, clear of the labels of A.
+KNOB = 1.55
 SIZE = 112
 
 

@@ -3,7 +3,8 @@
 from ...vectors import IDENTITY, scale
 
 REACH = 1.25
-APART = 165  # pixels
+# In pixels.
+APART = 165
 SIZE = 100
 
 
