@@ -5,23 +5,23 @@ from typing import Any, NamedTuple
 
 
 class Kind(NamedTuple):
-    """What is particular to one kind of question; each function is given a `Question`.
+    """The particular properties of one kind of question; each function receives a `Question`.
 
     Attributes
     ----------
     entries : function (question, value) -> list of int
-        For answers that are numbers: the nodes of an answer's entries, in order. Raises a fault of
-        the form.
+        For answers that are numbers: returns the nodes of an answer's entries, in order. Raises a
+        fault of the form.
     text : function (question, plain) -> str
-        For answers in words: the one way of writing what is meant.
+        For answers in words: returns the one spelling of what is meant.
     unique : function (question, numbers) -> list
-        Turns the many right ways of stating an answer into one: a quaternion and its negative, say.
+        Reduces equally right values, such as a quaternion and its negative, to one of them.
     fault : function (question, numbers) -> Fault or None
-        What is wrong with the form of the numbers of an answer.
+        Returns the fault in the form of an answer's numbers.
     parts : int
         How many numbers, each off by the tolerance, may make up one number of ``unique``.
     wrong : str
-        What a wrong answer has right.
+        The message about what is right in a wrong answer.
     begin : str
         Where to begin: the first step of the ladder of hints.
     needs : tuple of str
@@ -31,30 +31,30 @@ class Kind(NamedTuple):
     either_sign : bool
         Whether an answer and its opposite are both right.
     mistakes : function (question, answer, turns, turned) -> iterable of Mistake
-        The typical mistakes, carried out on the right answer.
+        Makes the typical mistakes in the right answer.
     messages : dict
-        What a student is told of a mistake, by its note: functions of the question and of the
-        mistake's details.
+        The messages about mistakes, by their notes: functions of the question and of the mistake's
+        details.
     details : dict
-        What the details of these mistakes may be, by name: tuples of values, so that a mistake has
-        a number.
+        The possible values of these mistakes' details, by name, as tuples, which number the
+        mistakes.
     slips : dict
-        Common slips that go with another mistake, by name: what is said of each, and a function of
-        the question and the numbers of an answer that undoes it, or gives ``None`` where it makes
-        no sense.
+        Common slips that accompany another mistake, by name. Each has its message, and a function
+        of the question and an answer's numbers that undoes it, or returns ``None`` where that is
+        impossible.
     build : function (turns) -> matrix
-        The answer that successive turns lead to, where ``turns`` may be given.
+        Returns the answer that successive rotations lead to, if an author may give ``turns``.
     forms : function (question, answer) -> list of (str, answer)
-        Further ways of writing a right answer, to try a question with.
+        Returns further forms of a right answer, for testing a question.
     picture : function (question, numbers) -> str
-        The picture of an answer of numbers, as HTML.
+        Returns the picture of an answer of numbers, as HTML.
     public : function (answer) -> dict
-        What of the right answer a student's computer must know, and may.
+        Returns what a student's computer must, and may, know about the right answer.
     by_a_person : bool
-        Whether a person reads the answers; then nothing is sealed, and no program says what is
+        Whether a person marks the answers. Then nothing is sealed, and no program decides what is
         right.
     another : function (question, answer) -> answer
-        An answer of the right form that is another one.
+        Returns a different answer of the right form.
     """
 
     entries: Callable[..., Any] | None = None

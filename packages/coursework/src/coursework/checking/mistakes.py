@@ -1,11 +1,11 @@
 """The typical mistakes: their effect on a right answer, and their messages to the student.
 
-When a question is sealed, every mistake that applies to it is carried out on the right answer, and
-its result gets a locker of its own. So a student's mistake is recognised by its fingerprint, and
-the student's computer needs nothing of the right answer. Mistakes that lead to the same answer are
+When a question is sealed, we make every mistake that applies to it in the right answer, and each
+result gets its own locker. A student's mistake is thus recognised by its fingerprint, and the
+student's computer needs nothing of the right answer. Mistakes that lead to the same answer are
 named together.
 
-The messages are no secret; which of them a question knows, and for what answers, is.
+The messages are no secret; which of them a question knows, and for which answers, is.
 """
 
 import hashlib
@@ -112,7 +112,7 @@ def short_name(note: str, details: Mapping[str, Json]) -> bytes:
     return hashlib.sha256(text.encode("utf8")).digest()[:MISTAKE]
 
 
-# --- what each mistake does to an answer --------------------------------------------------------
+# --- the effect of each mistake on an answer ----------------------------------------------------
 
 
 def as_matrix(answer: Any) -> Any:

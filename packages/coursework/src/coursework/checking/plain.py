@@ -1,4 +1,4 @@
-"""An answer as plain data: what a check reads, and all that ever leaves a student's process.
+"""Answers as plain data, the only data that a check reads or that leaves a student's process.
 
 An answer may be a SymPy expression, a matrix, a reference frame, a vector, a NumPy array, a list or
 a string. Here it becomes a table of numbers, names and operations that JSON can represent:
@@ -151,7 +151,7 @@ class FrameGraph(Protocol):
 
 
 class NotPlain(ValueError):
-    """An answer cannot be read; the message explains why, in the student's terms."""
+    """An error for an answer that cannot be read; the message explains why to the student."""
 
 
 class TooMuchWork(BaseException):
@@ -628,7 +628,7 @@ def _module(kind: type) -> str:
 
 
 def _is_array(answer: object) -> TypeGuard[Array]:
-    """Whether this behaves like an array of NumPy or of its stand-in."""
+    """Check whether this behaves like an array of NumPy or of its stand-in."""
     return callable(getattr(answer, "tolist", None)) and isinstance(
         getattr(answer, "shape", None), tuple
     )
@@ -641,7 +641,7 @@ def _is_quantity(part: object) -> bool:
 
 
 def _is_rate(part: sympy.Basic) -> TypeGuard[sympy.Derivative]:
-    """Whether this is the derivative of a function of time itself, which has a name of its own."""
+    """Check whether this is the derivative of a function of time, which has a name of its own."""
     return isinstance(part, sympy.Derivative) and isinstance(part.expr, AppliedUndef)
 
 

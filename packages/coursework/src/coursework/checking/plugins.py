@@ -1,23 +1,23 @@
-"""What a course brings of its own: kinds of questions, and its sealed questions.
+"""Plug-ins of courses, with further kinds of questions and sealed questions.
 
 A plug-in is a module that an installed distribution names in its entry points:
 
 .. code-block:: toml
 
-    [project.entry-points."coursework.plugins"] orientation = "orientation_course"
+    [project.entry-points."coursework.plugins"]
+    orientation = "orientation_course"
 
-Its folder ``sealed``, if it has one, holds sealed questions. These names
-in it are read, each if it is there:
+Its folder ``sealed``, if it has one, contains sealed questions. It may define these names:
 
 ``KINDS``
     A `coursework.checking.kind.Kind` for each further kind of question, by its name.
 ``DEEDS``
-    What the class did, for the instructor's report, by the note of a mistake: ``"conjugate": "gave
+    What students did, for the instructor's report, by the note of a mistake: ``"conjugate": "gave
     the conjugate"``.
 ``CLOSED``
-    Number of possible answers for each kind of question that has only a few, by the kind's name.
+    The number of possible answers for each kind of question that has only a few, by its name.
 ``PACKAGES``
-    Names of the packages that the course's notebooks import, so that grading has them at hand.
+    The names of the packages that the course's notebooks import, which grading must have.
 """
 
 import functools
@@ -27,7 +27,7 @@ from importlib import metadata, resources
 from importlib.resources.abc import Traversable
 from types import ModuleType
 
-from .kind import Kind as Kind  # plug-ins take it from here
+from .kind import Kind as Kind  # Plug-ins import it from here.
 from .kinds import KINDS
 from .question import Question
 

@@ -40,33 +40,35 @@ OTHERS = "other variants"
 
 @dataclass(frozen=True)
 class Entry:
-    """What is known of a question with one set of numbers.
+    """The record of a question with one set of numbers.
 
     Attributes
     ----------
     outcome, note : str
-        Of the last check, but what was right stays right; empty before the first.
+        The result of the last check, except that a right answer stays right; empty before the
+        first.
     answers : tuple of str
         The different wrong answers, hashed.
     help : str
-        The help that was had before the answer was right, a key of
+        The help that the student had before the right answer, a key of
         `coursework.checking.reply.HELP`.
     page : Place or None
-        Where the hints of the last mistake stand.
-    mistake : str
-        What is worth another look, and when it was made, in seconds.
+        The place of the hints about the last mistake.
+    mistake, mistake_at : str, float
+        A mistake worth another look, and when it was made, in seconds.
     after : tuple of (str, Place)
-        Hints that other questions have opened for this one: these, and where they stand.
+        The questions that have opened hints for this one, with the places of these hints.
     variant : int
     numbers : str
-        What these numbers are called, whatever their place among the variants; empty where a
-        question has no others.
+        The name of these numbers, independent of the variant's number; empty if a question has no
+        others.
     whose : str or None
-        Whose numbers they were, empty for everybody's; ``None`` where all have the same.
+        The ID of the student whose numbers they were, empty for the default ones; ``None`` if
+        everybody has the same.
     others : tuple of Entry
-        What is known with other numbers.
+        The records with other numbers.
     more : mapping
-        What else stands there.
+        Other fields of the entry.
     """
 
     outcome: str = ""
@@ -139,7 +141,7 @@ class Entry:
         return fields_as_json | ({OTHERS: _by_variant(self.others)} if self.others else {})
 
     def has(self, variant: int, numbers: str) -> bool:
-        """Whether it has these numbers; an unnamed entry knows only its variant's number."""
+        """Check whether it has these numbers; an unnamed entry knows only its variant's number."""
         return self.numbers == numbers if self.numbers and numbers else self.variant == variant
 
     def with_numbers(self, variant: int, numbers: str) -> Entry:

@@ -41,19 +41,19 @@ class Variant:
     Attributes
     ----------
     number, count : int
-        Its number, and how many there are.
+        The variant's number, and the number of variants.
     given : mapping
         Its numbers and names, by the names of the parameters.
     shown : mapping of str
-        How its text shows them.
+        The same as its text shows them.
     text : str
-        Of the question, with ``{{places}}`` for what is shown.
+        The text of the question, with placeholders such as ``{{force}}``.
     picture : str or None
-        As `coursework.checking.variants.packed` makes it.
+        The picture, as `coursework.checking.variants.packed` returns it.
     names : tuple of str
-        The names of all variants, where a student's variant is found by its name.
+        The names of all variants, if students get variants by name.
     edition : str
-        Of the course: each edition draws its own variants.
+        The edition of the course, which determines the draws.
     """
 
     number: int = 0
@@ -99,44 +99,43 @@ OF_VARIANTS = ("variant", "variants", "given", "shown", "text", "picture", "name
 
 @dataclass(frozen=True)
 class Question:
-    """What a student's computer knows of a question.
+    """The part of a question that a student's computer knows.
 
     Attributes
     ----------
     kind : str
         A key of `coursework.checking.plugins.kinds`.
     salt : str
-        From which the points and the edges of the cells follow, and with which fingerprints are
-        hashed.
+        Determines the points and the edges of the cells, and is hashed with fingerprints.
     frames : tuple of str
-        The target and the source; of a vector the frame of its components.
+        The target and the source; for a vector, the frame of its components.
     symbols : mapping of str to (float, float)
-        The symbols of the answer, each with the range in which it is tried.
+        The symbols of the answer, each with the range of its values.
     unit : tuple of tuples of str
         Groups of symbols that make a unit vector or a unit quaternion.
     shape : (int, int) or None
     length : int or None
     options : tuple of str
     tolerance, relative : float or None
-        What the answer may be off by, absolutely, and as a share of itself; it is exact if there is
-        no tolerance.
+        The allowed error of an answer, absolute and as a share of it; without a tolerance, it is
+        exact.
     calls : tuple of lists
         The arguments of each call of a function.
     takes : str or None
         ``"lists"`` or ``"arrays"``.
     result : str or None
-        The kind of what a function returns.
+        The kind of a function's results.
     quantity : str or None
     either_sign, unit_vector : bool or None
     every_symbol : bool or None
-        Whether the right answer holds each of the symbols.
+        Whether the right answer contains each of the symbols.
     scale : str or None
-        How large the unit of a measurement is.
+        The size of a measurement's unit.
     exam : bool or None
         Whether nothing is sealed.
     variant : Variant or None
     arguments : mapping
-        What only this kind of question has, as its plug-in calls it.
+        The arguments that only this kind of question has, by their names in its plug-in.
     """
 
     kind: str
@@ -250,7 +249,7 @@ class Note(NamedTuple):
 
 @dataclass(frozen=True)
 class KnownAnswer:
-    """An answer that a question knows: the right one, or one that a mistake leads to.
+    """A known answer of a question: the right one, or one that a mistake leads to.
 
     Attributes
     ----------
@@ -260,7 +259,7 @@ class KnownAnswer:
         The mistakes that lead to it.
     hints : tuple of str
     numbers : tuple of str
-        Its numbers, where a tolerance or a neighbour makes them needed.
+        Its numbers, if a tolerance or a neighbour requires them.
     """
 
     outcome: str
@@ -286,18 +285,18 @@ class KnownAnswer:
 
 @dataclass(frozen=True)
 class Locker:
-    """What a fingerprint opens.
+    """The content that a fingerprint opens.
 
     Attributes
     ----------
     answers : tuple of KnownAnswer
-        Those that have this fingerprint; none where it is that of answers which are nearly right.
+        The answers with this fingerprint; empty if it is that of nearly right answers.
     after : mapping of tuples of str
         Hints for other questions, by the names of these.
     solution : Place, str or None
-        The worked solution, or where it is.
+        The worked solution, or its place.
     place : Place or None
-        Where all this stood.
+        The place of all this.
     """
 
     answers: tuple[KnownAnswer, ...] = ()
@@ -339,14 +338,12 @@ class Sealed:
         The name of the answer.
     worth : float
     lockers : str
-        As `coursework.checking.sealing.pack` packs them.
+        The lockers, as `coursework.checking.sealing.pack` packs them.
     pages, ladder : tuple of str
-        As `coursework.checking.sealing.seal` seals them: the ladder consists of the hints of
-        every question.
+        The pages and the general hints, as `coursework.checking.sealing.seal` seals them.
     others : (str, str) or None
         In the first variant: the salt that all variants share, and the names by which an answer is
-        recognised as right in one of them, as `coursework.checking.sealing.pack_names` packs
-        them.
+        recognised as right in one of them, as `coursework.checking.sealing.pack_names` packs them.
     """
 
     question: Question

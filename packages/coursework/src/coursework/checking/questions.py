@@ -74,7 +74,7 @@ Find = Callable[[str], Locker | None]
 
 
 class NoSuchQuestion(KeyError):
-    """There is no question of that name, or its numbers are missing.
+    """An error because no question has that name, or its numbers are missing.
 
     The message suggests the nearest name.
     """
@@ -206,7 +206,7 @@ def find_question(name: str, student: str) -> Sealed:
         raise NoSuchQuestion(
             f"'{name}' is a notebook. Its questions are {', '.join(map(repr, questions))}."
         )
-    import difflib  # needed here alone
+    import difflib  # Only this needs it.
 
     nearest = difflib.get_close_matches(notebook.lower(), notebooks, 1, cutoff=0)
     near = difflib.get_close_matches(name.lower(), notebook_questions(nearest[0]), cutoff=0.5)
@@ -288,7 +288,7 @@ def salt_of_all(name: str) -> str:
 
 
 def is_right_for_others(sealed: Sealed, plain: Plain) -> bool:
-    """Whether a wrong answer is right in another variant of the question, as a copied one is."""
+    """Check whether a wrong answer is right in another variant, like a classmate's."""
     if not sealed.others:
         return False
     salt, names = sealed.others
@@ -594,7 +594,7 @@ def _few_digits(question: Question, plain: Plain) -> str:
 
 
 def _is_square(number: Fraction) -> bool:
-    """Whether a fraction is the square of another."""
+    """Check whether a fraction is the square of another."""
     return all(math.isqrt(part) ** 2 == part for part in (number.numerator, number.denominator))
 
 

@@ -163,7 +163,7 @@ def distance(question: Question, numbers: Sequence[Number], right: Sequence[Numb
 def within(
     question: Question, numbers: Sequence[Number], right: Sequence[Number], share: float = 1
 ) -> bool:
-    """Whether an answer is within a share of the tolerance, faster than `distance` if not."""
+    """Check whether an answer is within a share of the tolerance, faster than `distance` if not."""
     absolute, relative = tolerances(question)
     return all(
         abs(number - right_number) <= share * (absolute + relative * abs(right_number))
@@ -227,9 +227,7 @@ def fault(question: Question, reading: Reading) -> Fault | None:
 
 
 def _entries(question: Question, value: Value) -> Sequence[int]:
-    """The nodes of the entries of an answer; every kind whose answers
-    are no words says which they are.
-    """
+    """Return the nodes of the entries of an answer that does not consist of words."""
     entries = kinds()[question.kind].entries
     assert entries is not None
     return cast("Sequence[int]", entries(question, value))
@@ -237,7 +235,7 @@ def _entries(question: Question, value: Value) -> Sequence[int]:
 
 def _number(question: Question, result: Any, varies: bool = False) -> Number:
     try:
-        # What may remain of exponentials that should cancel: as much as the answer may be off by.
+        # Allow as much of exponentials that should cancel as the answer may be off by.
         return real(result, *(max(part, EXACT) for part in tolerances(question)))
     except UnknownSymbol as error:
         name = error.args[0][:40]
@@ -265,9 +263,9 @@ def _number(question: Question, result: Any, varies: bool = False) -> Number:
 def _with_units(
     question: Question, value: Value, numbers: list[list[Number]]
 ) -> list[list[Number]]:
-    """The number in base units, in terms of the question's scale, and which these are.
+    """Return the number in base units, divided by the question's scale, and its unit.
 
-    The unit is part of the answer: another one differs from it by more than any tolerance.
+    The unit is part of the answer, and another one differs from it by more than any tolerance.
     """
     _, name = parts_of(value)
     try:
@@ -280,7 +278,8 @@ def _with_units(
         ) from None
     absolute, _ = tolerances(question)
     far = [exponent * FAR * max(absolute, NEAR) for exponent in unit_given.exponents]
-    scale = MP.mpf(question.scale or 1)  # in an exam it is not told
+    # In an exam, the scale is not public.
+    scale = MP.mpf(question.scale or 1)
     return [[number * unit_given.size / scale, *far] for [number] in numbers]
 
 
@@ -292,7 +291,7 @@ def _read_function(question: Question, plain: Plain) -> Reading:
     returned = parts_of(value)
     if all(map(is_blank, returned)):
         if not value[2]:
-            raise Blank  # the body of the function is still empty
+            raise Blank  # The body of the function is still empty.
         raise Fault(
             "returned nothing",
             "The function computes something but returns nothing. End it with a line that begins "

@@ -37,10 +37,10 @@ class Shown(NamedTuple):
     Attributes
     ----------
     tex : str
-        Empty where it is shown as text only.
+        Empty if it is shown as text only.
     text : str
     picture : str
-        HTML, for an orientation; empty for other answers.
+        HTML for an orientation; empty for other answers.
     """
 
     tex: str
@@ -61,29 +61,29 @@ class Reply:
     outcome : str
         A key of `OUTCOMES`.
     note : str
-        The mistake, or the fault of the form, in a few words; empty where there is none.
+        The mistake, or what is wrong with the form, in a few words; empty if there is none.
     messages : list of str
-        Paragraphs, with ``code``, *emphasis* and $mathematics$ marked as in Markdown.
+        Paragraphs, with ``code``, *emphasis* and $formulas$ as in Markdown.
     solution : str
         HTML of the worked solution, once it is earned.
     answer : str
-        What all ways of writing this answer have in common, hashed.
+        A hash that all ways of writing this answer share.
     tries : int
-        How many different answers the record beside the notebook knows of; 0 where there is none.
+        The number of different answers in the record beside the notebook; 0 without one.
     tried : list of str
-        A few digits of each wrong answer that the record knows of, the newest last.
+        A few digits of each wrong answer in the record, the newest last.
     help : str
-        The help that was had before the answer was right, a key of `HELP`; empty without any.
+        The help that the student had before the right answer, a key of `HELP`; empty without any.
     details : dict
-        What the message of the mistake needed to know.
+        The data for the message about the mistake.
     sibling : str
-        The sibling of the question for practice after help; empty where there is none.
+        The sibling of the question for practice after help; empty if there is none.
     opened : Locker or None
         What else the answer opened: the place of the worked solution, hints for other questions.
     shown : Shown or None
         The answer as it was read.
     known : KnownAnswer or None
-        The mistake of the question that it is, with its hints.
+        The known mistake that it is, with its hints.
     """
 
     def __init__(
@@ -128,7 +128,7 @@ class Reply:
         known = f' data-question="{name}" data-tries="{self.tries}"' if self.tries else ""
         known += f' data-tried="{html.escape(" ".join(self.tried))}"' if self.tried else ""
         known += f' data-help="{self.help}"' if self.help else ""
-        # The book's pages make a button of it.
+        # The book's pages turn it into a button.
         known += f' data-sibling="{html.escape(self.sibling)}"' if self.sibling else ""
         formula = {} if tex_is_typeset() else {"formula": mathml}
         paragraphs = "".join(
@@ -151,11 +151,11 @@ class Reply:
         )
 
 
-# --- mathematics --------------------------------------------------------------------------------
+# --- formulas -----------------------------------------------------------------------------------
 
 
 def tex_is_typeset() -> bool:
-    """Whether the front end typesets TeX in HTML, which VS Code, Colab and marimo do not."""
+    """Check whether the front end typesets TeX in HTML, which VS Code, Colab and marimo do not."""
     return not ("VSCODE_PID" in os.environ or {"google.colab", "marimo"} & set(sys.modules))
 
 
@@ -188,7 +188,7 @@ def _as_tex(source: str) -> str:
     return f'<span class="math">${html.escape(source)}$</span>'
 
 
-# Code, mathematics and emphasis, each between two marks; a single mark is text.
+# Code, formulas and emphasis, each between two marks; a single mark is text.
 MARKED = re.compile(r"`([^`]+)`|\$([^$]+)\$|(?<![\w)])\*([^*\s][^*]*)\*(?!\w)")
 
 
@@ -245,7 +245,7 @@ WRITTEN_OUT = (
     (r"\\times\s?", "×"),
     (r"\\otimes\s?", "⊗"),
     (r"\\pm\s?", "±"),
-    # Two words stay two.
+    # Keep two words apart.
     (r"(?<=[A-Za-z0-9)\]])\\(?=[A-Za-z])", " "),
 )
 

@@ -30,7 +30,7 @@ NAME, INSIDE, TAG, PAGE_KEY, PAGE_TAG = 4, 10, 2, 8, 8
 LOCKER = NAME + INSIDE + TAG
 #: Bytes of the short name of a mistake.
 MISTAKE = 4
-# In place of the number of a page: there is none.
+# The page's number in a locker without a page.
 NO_PAGE = 0xFF
 
 
@@ -40,7 +40,7 @@ def slow_key(salt: str, fingerprint: str) -> bytes:
 
 
 def portable_pbkdf2(password: bytes, salt: bytes, rounds: int) -> bytes:
-    """PBKDF2 with HMAC-SHA-256, one block, for a Python that was built without OpenSSL.
+    """Compute one block of PBKDF2 with HMAC-SHA-256, for a Python built without OpenSSL.
 
     In a browser's Python the standard library has no ``pbkdf2_hmac``.
 
@@ -52,7 +52,8 @@ def portable_pbkdf2(password: bytes, salt: bytes, rounds: int) -> bytes:
     )
     as_number = int.from_bytes
     current, total = salt + b"\0\0\0\1", 0
-    for _ in range(rounds):  # every call of one of our functions is slow in a browser's Python
+    # Calls of our own functions are slow in a browser's Python, so avoid them in the loop.
+    for _ in range(rounds):
         first, second = inner(), outer()
         first.update(current)
         second.update(first.digest())
@@ -83,9 +84,7 @@ def locker(
     page: int = NO_PAGE,
     page_key: bytes = b"",
 ) -> bytes:
-    """Make a locker: one of two outcomes, and up to two short names of
-    mistakes, or a page with its key.
-    """
+    """Make a locker: an outcome, and up to two short names of mistakes or a page with its key."""
     inside = bytes([outcome, page]) + (
         b"".join(mistakes).ljust(PAGE_KEY, b"\0") if page == NO_PAGE else page_key
     )
@@ -138,10 +137,10 @@ def filled_up(lockers: str, count: int, secret: str) -> str:
 
 
 def open_locker(lockers: str, key: bytes) -> tuple[int, int | None, bytes] | None:
-    """Open the locker of a key: its outcome, its page, and the key of that; or give ``None``.
+    """Open the locker of a key; return its outcome, page and the page's key, or ``None``.
 
-    A page tells the mistakes itself. Where there is none, it is ``None``, and what stands in place
-    of its key says which mistakes they are: `mistakes_in` reads it.
+    A page describes the mistakes itself. Without a page, the second item is ``None``, and the third
+    contains the mistakes for `mistakes_in`.
 
     Raises
     ------
@@ -163,7 +162,7 @@ def open_locker(lockers: str, key: bytes) -> tuple[int, int | None, bytes] | Non
 
 
 def mistakes_in(inside: bytes) -> list[bytes]:
-    """The short names of the mistakes in a locker without a page.
+    """Return the short names of the mistakes in a locker without a page.
 
     >>> mistakes_in(b"abcd" + bytes(4)), mistakes_in(bytes(8))
     ([b'abcd'], [])
@@ -172,17 +171,16 @@ def mistakes_in(inside: bytes) -> list[bytes]:
     return [name for name in names if any(name)]
 
 
-# --- what is right in some variant: names alone, which lead to nothing --------------------------
+# --- right answers of other variants: only names, which lead to nothing -------------------------
 
 
 def name_of(key: bytes) -> bytes:
-    """The name under which it is known that an answer is right for some variant of a question."""
+    """Return the name by which an answer is recognised as right for some variant of a question."""
     return _derive(key, "right for some numbers")[:NAME]
 
 
 def pack_names(names: Iterable[bytes], together: int) -> str:
-    """The text of some names in an order that tells nothing, with others among them up to a
-    multiple of ``together``.
+    """Return the text of names in an uninformative order, padded to a multiple of ``together``.
 
     >>> packed = pack_names([name_of(bytes(32))], 8)
     >>> len(base64.b85decode(packed)) // NAME
@@ -200,7 +198,7 @@ def pack_names(names: Iterable[bytes], together: int) -> str:
 
 
 def is_among(packed: str, key: bytes) -> bool:
-    """Whether the name that belongs to a key is among some."""
+    """Check whether the name that belongs to a key is among the packed ones."""
     data, name = base64.b85decode(packed), name_of(key)
     return any(data[start : start + NAME] == name for start in range(0, len(data), NAME))
 
@@ -227,18 +225,18 @@ def unseal(sealed: str, key: bytes) -> Any:
     Raises
     ------
     ValueError
-        The key is another one, or the data was changed.
+        The key is wrong, or the data was changed.
     """
     data = base64.b85decode(sealed)
     hidden, tag = data[:-PAGE_TAG], data[-PAGE_TAG:]
     if not hmac.compare_digest(tag, _tag(hidden, key, "page")[:PAGE_TAG]):
         raise ValueError("The sealed data does not match this key, or has been changed.")
     data = _mask(hidden, key, "page")
-    return json.loads(zlib.decompress(data[4:]))  # what follows its end fills up
+    return json.loads(zlib.decompress(data[4:]))  # The rest is padding.
 
 
 def shorten(text: str, words: str) -> str:
-    """A text as what differs from some words that its reader has, too.
+    """Return a text as its differences from words that its reader has, too.
 
     >>> words = "It is twice the force times the arm."
     >>> lengthen(shorten("It is twice the force times the arm, 12 N m.", words), words)
@@ -249,7 +247,7 @@ def shorten(text: str, words: str) -> str:
 
 
 def lengthen(short: str, words: str) -> str:
-    """The text of which `shorten` made a short one."""
+    """Return the text that `shorten` shortened."""
     unpacker = zlib.decompressobj(-15, zdict=words.encode("utf8"))
     return unpacker.decompress(base64.b85decode(short)).decode("utf8")
 

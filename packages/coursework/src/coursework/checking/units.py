@@ -73,7 +73,7 @@ def unit(text: str) -> Unit:
             raise UnknownUnit(plain[place:][:20])
         place = token.end()
         if token["unit"] == "°" and plain[place : place + 1] in ("C", "F"):
-            # A temperature scale has a zero of its own, and is no angle times coulomb.
+            # A temperature scale has its own zero, and is not an angle times coulombs.
             raise UnknownUnit(plain[place - 1 : place + 1])
         if token["over"]:
             sign = -1
@@ -88,7 +88,7 @@ def unit(text: str) -> Unit:
             size *= factor.size**power
             for order, exponent in enumerate(factor.exponents):
                 exponents[order] += power * exponent
-            # The units behind a slash are a single one, or those in brackets.
+            # Only one unit after a slash is in the denominator, or those in brackets.
             sign = 1 if inside is None else inside
     return Unit(size, tuple(exponents))
 

@@ -22,14 +22,14 @@ from .fields import Json, pair, text
 from .identity import plain_identity
 from .question import Question, Variant
 
-# The number of siblings of a question that count: with all of them, somebody else's answer would
-# count, too.
+# The number of siblings of a question that count. If all variants did, so would somebody else's
+# answer.
 SIBLINGS = 2
 SIBLING = re.compile(r"(?P<question>.+)/sibling(?:-(?P<order>[2-9]))?")
 
 
 def variant_of(student: str, name: str, count: int, edition: str = "") -> int:
-    """The number of a student's variant of a question, below ``count``.
+    """Return the number of a student's variant of a question, below ``count``.
 
     >>> [variant_of(ada, 'levers/see-saw', 16) for ada in ('Ada@Uni.example ', 'ada@uni.example')]
     [11, 11]
@@ -70,19 +70,19 @@ def names_of_variants(variants: Iterable[Variant]) -> list[str]:
 def numbers_of_variants(student: str, name: str, variant: Variant, count: int) -> list[int]:
     """Return the numbers of all variants in a student's order: first the student's own.
 
-    A course that names its variants gives them by these names (rendezvous hashing): each student
-    has an order of all names that there could be, so that one that is taken out moves only those
-    who had it, to the one that came next. Without names the number follows from how many there are,
-    and all others from it.
+    A course that names its variants assigns them by these names (rendezvous hashing). Each student
+    has an order of all possible names, so removing a variant affects only those who had it, who get
+    the next one. Without names, the number depends on the count of variants, and the others follow
+    in turn.
 
     Parameters
     ----------
     student : str
-        Who one is; nobody in particular has the order in which the variants stand.
+        The student's ID; without one, the variants keep their order.
     name : str
     variant : Variant
         One of them.
-    count : int
+    A variant of the question.
     """
     edition, names = variant.edition, variant.names
     student = plain_identity(student)
@@ -155,7 +155,7 @@ def packed(picture: str, alt: str) -> str:
 
 
 def text_of(variant: Variant) -> str:
-    """The whole text of a question that has variants, with its picture.
+    """Return the whole text of a question that has variants, with its picture.
 
     >>> picture = packed('<svg width="9">', "Up")
     >>> given = {"arm": "2"}
@@ -172,7 +172,7 @@ def text_of(variant: Variant) -> str:
 
 
 class Given:
-    """What is given in a question: its text, and its numbers and names by name.
+    """The given data of a question: its text, and its numbers and names by name.
 
     >>> given = Given("A force of $20$ N.", {"force": 20})
     >>> given.force, given["force"]

@@ -1,7 +1,7 @@
-"""A plain answer as it is shown to people: as TeX of a few operations, or as a line of text.
+"""Plain answers for people, as TeX of a few operations or as a line of text.
 
-What a student wrote comes in by its structure only: in TeX, names are letters and digits, and
-whatever else is in an answer is not written there, but shown as text.
+Only the structure of a student's answer gets into TeX, where names consist of letters and digits.
+We show anything else as text.
 """
 
 import itertools
@@ -25,7 +25,8 @@ from .plain import (
 
 Part = TypeVar("Part")
 
-LONGEST = 4_000  # of the TeX of one answer
+# The most characters of one answer's TeX.
+LONGEST = 4_000
 GREEK = (
     "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi "
     "pi rho sigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi "
@@ -44,11 +45,11 @@ FUNCTIONS = {
 
 
 class NoMathematics(ValueError):
-    """An answer is not of a kind that is shown as mathematics, or too long."""
+    """An error for an answer that is not shown as a formula, because of its kind or its length."""
 
 
 def answer_as_tex(plain: Plain) -> str:
-    """A plain answer as TeX, or an empty text where it is shown as text only."""
+    """Return a plain answer as TeX, or an empty string if it is shown as text only."""
     try:
         return _value(plain["value"], plain["nodes"])
     except NoMathematics:
@@ -73,7 +74,7 @@ def _value(value: Value, nodes: Sequence[Node]) -> str:
 
 
 def _rows_of(value: Value) -> list[list[int]]:
-    """The rows of a matrix, of a list of expressions or of lists of them, as nodes; or none."""
+    """Return the rows of a matrix, or a list or nested list of expressions, as nodes."""
     if value[0] == "matrix":
         (rows, columns), entries = size_of(value), entries_of(value)
         return [entries[row * columns : (row + 1) * columns] for row in range(rows)]
@@ -102,9 +103,7 @@ def _name(name: str) -> str:
 
 
 def _in_brackets(text: str) -> str:
-    """Brackets that grow with what is in them, where it is high: in a table
-    others would grow with its line.
-    """
+    """Return text in brackets, which grow if the text is tall; in a table, others would, too."""
     return rf"\left({text}\right)" if r"\frac" in text or "^" in text else f"({text})"
 
 
@@ -114,9 +113,7 @@ class _Writer:
         self.left = LONGEST
 
     def node(self, order: int, around: int, depth: int = 0) -> str:
-        """One node; `around` is how tightly what stands round it binds: 0 nothing,
-        1 a sum, 2 a product, 3 a power.
-        """
+        """Return one node; `around` is the outer precedence: 0 none, 1 sum, 2 product, 3 power."""
         self.left -= 1
         if self.left <= 0 or depth > 30:
             raise NoMathematics
@@ -184,22 +181,20 @@ class _Writer:
         return _in_brackets(text) if around > (1 if sign else 2) else text
 
 
-# --- as text ------------------------------------------------------------------------------------
+# --- text ---------------------------------------------------------------------------------------
 
 OPERATORS = {"Add": (" + ", 1), "Mul": ("*", 2), "Pow": ("**", 3)}
 NAMES = {"Pi": "pi", "Exp1": "E", "ImaginaryUnit": "I", "Abs": "abs"}
 
 
 def answer_as_text(plain: Plain | None, most: int = 300) -> str:
-    """A plain answer as one line like the code that makes it, cut short where it is long."""
+    """Return a plain answer as one line like the code that makes it, cut off if it is long."""
     text = _Printer(plain["nodes"], most).value(plain["value"]) if plain else ""
     return text if len(text) <= most else f"{text[:most]}…"
 
 
 class _Printer:
-    """Writes hardly more than asked for: what is shared in the nodes would
-    fill a disk if it were written out.
-    """
+    """A printer that stops near the limit, since expanding all shared nodes could fill a disk."""
 
     def __init__(self, nodes: Sequence[Any], most: int) -> None:
         self.nodes = nodes
@@ -253,7 +248,7 @@ class _Printer:
             digits = "/".join(rest)
             size = abs(float(digits)) if operation == "float" else None
             if size is not None and (size == 0 or 1e-300 < size < 1e300):
-                digits = f"{float(digits):.10g}"  # enough to recognise a number by
+                digits = f"{float(digits):.10g}"  # These are enough digits to recognise a number.
             tight = around > 1 and ("/" in digits or digits.startswith("-"))
             return f"({digits})" if tight else digits
 
@@ -273,9 +268,7 @@ class _Printer:
 
 
 def readable(text: str, most: int = 2_000) -> str:
-    """Text that shows what it holds: without signs that are not
-    seen, or that turn the rest round.
-    """
+    """Return text without characters that are invisible or reverse the writing direction."""
     if len(text) <= most and text.isascii() and text.isprintable():
         return text
     shown = "".join(
