@@ -1,6 +1,6 @@
-// What an address of the book carries behind its #: the name of a place on the page, as a rule, and after it, where
-// there is more to say, "=1." and plain data: how a figure stands, or what two programs gave. The number is the version
-// of this format; an address that somebody has kept is read for ever.
+// The fragment of an address of the book, behind the #, is usually the name of a place on the page. It may continue
+// with "=1." and plain data: the state of a figure, or the numbers of two programs. The number is the version of this
+// format; addresses that somebody has kept must remain readable.
 
 const ADDRESS_VERSION = 1, LONGEST_ADDRESS = 6000;
 const NEWER_ADDRESS = 'This address was made by a newer edition of the book than this page. Reload the page.';
@@ -12,7 +12,7 @@ function finite(name, value) {
   return value;
 }
 
-// The fragment of an address, with its #, that carries plain data (an object, as JSON has it) to a place on a page.
+// Return the fragment of an address, with its #, that carries plain data (an object, as in JSON) to a place on a page.
 export function fragmentOf(place, content) {
   const bytes = new TextEncoder().encode(JSON.stringify(content, finite));
   const text = btoa(String.fromCharCode(...bytes.slice(0, LONGEST_ADDRESS + 1)));
@@ -20,8 +20,8 @@ export function fragmentOf(place, content) {
   return `#${place}=${ADDRESS_VERSION}.${text.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '')}`;
 }
 
-// What a fragment carries: { place, content }; null where it is a plain name of a place. It may come from anybody:
-// whoever takes it up accepts what a reader could have entered and nothing else. Throws an Error for the reader.
+// Return the content of a fragment, { place, content }, or null for the plain name of a place. Anybody may have written
+// it, so callers must accept only what a reader could have entered. Throws an Error for the reader.
 export function carriedBy(fragment) {
   const [, place, version, text] = /^#?([a-z0-9-]+)=(\d+)\.(.*)$/s.exec(fragment) ?? [];
   if (place === undefined) return null;

@@ -5,7 +5,7 @@ import { button, change, element, fixed, follow, glide, group, liveText, numberT
 
 const FULL = 4 * Math.PI;
 
-// A plate on a belt: one full turn leaves a twist that stays, two leave none.
+// A plate on a belt: one full rotation leaves a twist in the belt, two leave none.
 export function render({ model, el }) {
   let stop = () => {};
   const turnTo = (angle) => {

@@ -10,7 +10,7 @@ const [N, A] = ['n', 'a'].map(hatted);
 const any = (list) => list[Math.floor(Math.random() * list.length)];
 const inDegrees = (angle) => `${plain(degrees(angle), 1).replace('-', '\u2212')}°`;
 
-// A new challenge: axes of which no two neighbours are equal, and angles that suit the task.
+// Make a new challenge: axes of which no two neighbours are equal, and angles that suit the task.
 function another(task) {
   const axes = [];
   while (axes.length < 3) axes.push(any(AXES.filter((axis) => axis !== axes.at(-1))));

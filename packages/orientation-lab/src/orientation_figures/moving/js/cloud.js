@@ -2,7 +2,7 @@ import { degrees, length } from './mathematics.js';
 import { orientations, picture, SIZE, tipsMean } from './cloud_picture.js';
 import { change, choice, element, follow, liveText, onceAFrame, open, plain, Sheet, slider, stage } from './shared.js';
 
-// Orientations with Gaussian errors: how large these are, and along which frame, is the reader's choice.
+// Orientations with Gaussian errors; the reader chooses their size and their frame.
 export function render({ model, el }) {
   const sheet = new Sheet({ bounds: [-180, -160, 180, 160], size: SIZE, changed: () => redraw(),
     name: 'The tips of two unit vectors of many orientations, on a sphere.' });

@@ -11,14 +11,14 @@ import { hatted } from './words_picture.js';
 const [N, A] = ['n', 'a'].map(hatted);
 const OTHER = 'another program', ANGLES = ['body fixed angles', 'space fixed angles'];
 const FORMS = { matrix: 9, quaternion: 4, [ANGLES[0]]: 3, [ANGLES[1]]: 3, 'axis times angle': 3 };
-// Numbers copied with two or three digits are put right, and the reader is told; more is another mistake.
+// Numbers copied with two or three digits are corrected, and we tell the reader; a larger error is another mistake.
 const ROUNDED = 0.02, EXACT = 1e-6;
 const NUMBER = /[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?/gi;
 const MINUS = /[\u2212\u2013]/g;
 
-// ---- what a side means ---------------------------------------------------------------------------------
+// ---- the meaning of a side ------------------------------------------------------------------------------
 
-// The side with the convention of its program in place of what the reader might have chosen.
+// Return a side with the convention of its program instead of what the reader may have chosen.
 export function settled(side, programs) {
   const facts = programs[side.program];
   if (!facts) return side;
@@ -31,7 +31,7 @@ export const formsOf = (program, programs) => (programs[program] ? Object.keys(p
 
 export const sequencesOf = (side, programs) => programs[side.program]?.sequences?.[side.form] ?? SEQUENCES;
 
-// The orientation that the numbers in a text describe, and what was put right; a text that means none is an error.
+// Return the orientation that the numbers in a text describe, and what was corrected; throw if they describe none.
 export function read(side, text) {
   const numbers = (decimalPoints(text).replace(MINUS, '-').match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
   const commas = numbers.length > wanted && /\d,\d/.test(text) ? ' Write 0.5 for one half: a comma separates two numbers.' : '';
@@ -59,7 +59,7 @@ export function read(side, text) {
   return { dcm: side.matrix === 'transposed' ? transpose(dcm) : dcm, said };
 }
 
-// The numbers of an orientation, in a flat list, as the side means them.
+// Return the numbers of an orientation, in a flat list, as the side means them.
 export function told(side, orientation) {
   const dcm = side.matrix === 'transposed' ? transpose(orientation) : orientation;
   if (side.form === 'matrix') return dcm.flat();
@@ -75,8 +75,8 @@ export function told(side, orientation) {
   return side.unit === 'degrees' ? values.map(degrees) : values;
 }
 
-// The orientation by the axes of the target, where both manuals say where the axes of a thing, or of its world, point to. One
-// triad of the other hand makes no orientation: then nothing is exchanged.
+// Express the orientation along the target's axes, if both manuals define the axes of an object or of its world. If
+// only one triad is left-handed there is no such orientation, so nothing is exchanged.
 export function byAxesOf(source, target, programs, dcm) {
   const sides = [source, target].map(({ program }) => ({ program, ...programs[program] })), [one, other] = sides;
   const [body, world] = [0, 1].map((k) => (one.axes?.[k] && other.axes?.[k] ? multiply(other.axes[k], transpose(one.axes[k])) : IDENTITY));
@@ -85,10 +85,10 @@ export function byAxesOf(source, target, programs, dcm) {
     said: body === world ? '' : `x, y, z point ${sides.map((side) => `${side.body.join(', ')} in ${side.program}`).join('; ')}.` };
 }
 
-// Twelve digits after the point: with nine, a program that looks at the length of a quaternion would refuse it.
+// Twelve digits after the point; with nine, a program that checks the length of a quaternion would refuse it.
 const short = (value) => String(Number(value.toFixed(12)) + 0);
 
-// The line of code that makes this orientation in the program of a side; none for another program.
+// Return the line of code that makes this orientation in the program of a side, or nothing for another program.
 export function line(side, numbers, programs) {
   const template = programs[side.program]?.lines[side.form];
   if (!template) return '';
@@ -106,13 +106,13 @@ export function line(side, numbers, programs) {
   return template.replace(/\{(-?)(\w+)\}/g, (_, minus, name) => (minus ? short(-values[name]) : values[name]));
 }
 
-// The formulas that convert: from the source to the matrix of this book, and from that to the target.
+// The formulas of the conversion: from the source to the matrix of this book, and from that to the target.
 const NAMED = { quaternion: 'quaternion', [ANGLES[0]]: 'body_fixed', [ANGLES[1]]: 'space_fixed', 'axis times angle': 'rotation_vector' };
 export const formulasOf = (source, target) => [
   ...(NAMED[source.form] ? [[`dcm_from_${NAMED[source.form]}`, source]] : []),
   ...(NAMED[target.form] ? [[`${NAMED[target.form]}_from_dcm`, target]] : [])];
 
-// The numbers as they are shown: a matrix in three rows.
+// The displayed numbers; a matrix has three rows.
 export const shown = (numbers) => (numbers.length === 9 ? [0, 3, 6].map((k) => numbers.slice(k, k + 3)) : [numbers])
   .map((row) => row.map(short).join(', ')).join('\n');
 
@@ -140,15 +140,15 @@ export function render({ model, el }) {
     refill();
   });
 
-  // A change of the source says anew what the text means; a change of the target only how it is written.
+  // A change of the source changes the meaning of the text; a change of the target only changes the output.
   function pick(name, values) {
     const chosen = { ...model.get(name), ...values };
     if (!formsOf(chosen.program, programs).includes(chosen.form)) chosen.form = formsOf(chosen.program, programs)[0];
     const before = model.get(name);
     change(model, { [name]: settled(chosen, programs) });
     if (name !== 'source') return;
-    // Another form, sequence or unit would make nonsense of the text: it is written anew. Another reading of the
-    // same numbers is the question that the reader asks.
+    // With another kind of numbers the text would make no sense, so we write it again. To read the same numbers in
+    // another way is what the reader asks for.
     if (FORMS[chosen.form] !== FORMS[before.form]) refill(); else take(text);
   }
 
@@ -205,7 +205,7 @@ export function render({ model, el }) {
       for (const [key, list] of Object.entries(lists)) {
         list.show(now[key]);
         const select = list.element.querySelector('select');
-        // What the program decides cannot be chosen; what it does not take is not offered.
+        // A convention that the program fixes cannot be chosen, and forms that it does not take are not offered.
         if (key === 'form') for (const option of select.options) option.hidden = option.disabled = !forms.includes(option.value);
         if (key === 'sequence') for (const option of select.options) option.hidden = option.disabled = !sequencesOf(now, programs).includes(option.value);
         if (key in needed) {
@@ -251,7 +251,7 @@ export function render({ model, el }) {
   return unfollow;
 }
 
-// What is to be known about the numbers that come out.
+// Return what the reader should know about the result.
 function note(to, numbers, programs) {
   const angles = to.unit === 'degrees' ? numbers.map(radians) : numbers;
   if (to.form === ANGLES[0] && gimbalLockMargin(angles, to.sequence) < 1e-6

@@ -2,7 +2,7 @@ import { change, choice, element, follow, group, liveText, open } from './shared
 
 const SYMBOLS = ['$\\psi$', '$\\theta$', '$\\varphi$'], NAMES = ['psi', 'theta', 'phi'];
 
-// Menus and fields; the algebra is done in Python, which sends the formulas.
+// Menus and fields. Python does the algebra and sends the formulas.
 export function render({ model, el }) {
   const sequence = choice({ name: 'Sequence', options: model.get('sequences').map((one) => [one, [...one].join('-')]),
     change: (value) => change(model, { sequence: value }) });

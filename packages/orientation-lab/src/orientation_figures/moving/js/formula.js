@@ -2,8 +2,8 @@ import { AXES, SEQUENCES } from './mathematics.js';
 import { colours, languageChoice, textBox, textOf, textsIn } from './take_away.js';
 import { button, choice, element, group, liveText, onceAFrame, open } from './shared.js';
 
-// Any formula of the module, in a language and a convention that the reader chooses; with a button at each function of
-// the page that can be taken away.
+// Any formula of the module, in a language and a convention that the reader chooses, and a button for it at each
+// function on the page.
 export function render({ el }) {
   const wanted = { name: 'dcm_from_quaternion', language: 'C', sequence: 'zxy', axis: 'x', matrix: 'as here', scalar: 'first', unit: 'radians' };
   const redraw = onceAFrame(draw), said = liveText();
@@ -34,7 +34,7 @@ export function render({ el }) {
         if (!texts[name]) continue;
         heading.append(button('In another language', () => {
           wanted.name = name;
-          heading.parentElement.querySelector('dd').prepend(el);   // where the reader is
+          heading.parentElement.querySelector('dd').prepend(el);   // Move it to where the reader is.
           draw();
         }, { class: 'take-formula' }));
       }

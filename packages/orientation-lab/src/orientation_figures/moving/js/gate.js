@@ -3,7 +3,7 @@ import { change, choice, element, follow, liveText, onceAFrame, open, plain, She
 
 const percent = (share) => `${plain(100 * share, 1)}\u00a0%`;
 
-// A walk past a car: the reader moves the steel and the gate, and sees where the heading goes.
+// A walk past a car: the reader changes the steel and the gate, and sees the effect on the heading.
 export function render({ model, el }) {
   const { steels, rejected, rows } = model.get('table');
   const setSteel = (value) => {
@@ -16,7 +16,7 @@ export function render({ model, el }) {
   } });
   sheet.svg.setAttribute('aria-label', 'The heading error over time, in degrees, for five walks past a car. '
     + 'The arrow keys change the steel.');
-  // A plot has one view: the keys and a finger move the steel instead.
+  // A plot has only one view, so the keys and a finger change the steel instead.
   sheet.look = () => {};
   sheet.press = (event) => {
     const step = { ArrowLeft: -2, ArrowDown: -2, ArrowRight: 2, ArrowUp: 2 }[event.key];

@@ -24,7 +24,7 @@ export function render({ model, el }) {
       const [angles, order] = state(), gimbal = device(angles, order), k = 'BCD'.indexOf(part);
       const far = (point) => length(subtract(sheet.onSheet(point), at)) - 0.1 * dot(point, sheet.view[2]);
       const held = PLACES[part](gimbal, 360).reduce((best, point) => (far(point) < far(best) ? point : best));
-      // Where that would be if this joint were at zero.
+      // The position of the point if this joint were at zero.
       const arm = turned(gimbal.axes[k], -angles[k], held);
       const follower = followTurn(sheet, { axis: gimbal.axes[k], arm, angle: angles[k], at });
       return (to) => setAngle(k, follower(to));
@@ -119,12 +119,12 @@ function situation(axes, margin, apart) {
     + `. Trade one for the other and the camera stands still. One degree of freedom is lost.`;
 }
 
-// Points at which the rings and the camera can be held.
+// Points where the reader can take hold of the rings and the camera.
 const circle = (u, v, radius, count) => Array.from({ length: count }, (_, k) => add(
   scale(radius * Math.cos(2 * k * Math.PI / count), u), scale(radius * Math.sin(2 * k * Math.PI / count), v)));
 const PLACES = {
   B: ({ B, at }, count) => circle(B[at[0]], B[at[1]], OUTER, count),
   C: ({ C, at }, count) => circle(C[at[1]], C[at[2]], INNER, count),
-  // Beside the axis that the camera turns about.
+  // A point beside the axis about which the camera rotates.
   D: ({ D, at }) => [scale(0.3, D[at[2] === 0 ? 2 : 0])],
 };

@@ -6,7 +6,7 @@ import { button, change, choice, element, fixed, follow, group, liveText, number
 const LETTERS = 'NABCDE';
 const dcmName = (target, source) => `\${}^${target}\\mathbf{C}^${source}$`;
 
-// The frames from target to source: up from both to where they meet.
+// Return the frames from target to source: up from both to their common ancestor.
 function pathOf(edges, target, source) {
   const parent = Object.fromEntries(edges.map(([frame, reference]) => [frame, reference]));
   const up = (frame) => (frame ? [frame, ...up(parent[frame])] : []);
@@ -79,7 +79,7 @@ export function render({ model, el }) {
   return follow(model, ['edges', 'target', 'source'], redraw);
 }
 
-// Factors that are walked against the way they were made are transposes.
+// Factors against the direction in which the frames were defined are transposes.
 function sentence(to, from, path, made) {
   if (to === from) return 'A frame relative to itself: the identity. Choose two different frames.';
   const factors = path.slice(1).map((name, k) => dcmName(path[k], name)).join(' ');

@@ -8,12 +8,12 @@ import { hatted } from './words_picture.js';
 const STEP = 15;
 const [N, M] = ['n', 'm'].map(hatted);
 
-// A triad, and its mirror image or a copy, which the reader turns.
+// A triad, and its mirror image or a copy, which the reader rotates.
 export function render({ model, el }) {
   let stop = () => {};
   const now = () => model.get('quaternion');
   const turnTo = (quaternion) => change(model, { quaternion: unit(quaternion) });
-  // A turn about an axis that stays, after all that have been made.
+  // Rotate about an axis fixed in N, after all previous rotations.
   const turnBy = (axis, angle, from = now()) => turnTo(multiplyQuaternions(quaternionFromAxisAngle(axis, angle), from));
   const place = () => scale(model.get('together') ? 0 : APART, sheet.view[0]);
 
@@ -23,7 +23,7 @@ export function render({ model, el }) {
       if (!part) return null;
       stop();
       const from = now();
-      // As a ball under the finger: the turn is about the axis of the screen at right angles to the way.
+      // Like a ball under the finger, it rotates about the axis of the screen perpendicular to the movement.
       return (to) => {
         const [right, down] = subtract(to, at), far = Math.hypot(right, down);
         if (far < 1) { turnTo(from); return; }
@@ -74,7 +74,7 @@ export function render({ model, el }) {
   return follow(model, ['image', 'quaternion', 'together'], redraw);
 }
 
-// The unit vectors of the image: of a mirror image the second one is reversed.
+// Return the unit vectors of the image; in a mirror image the second one is reversed.
 const rowsOf = (image, dcm) => dcm.map((row, k) => (image === 'mirror' && k === 1 ? scale(-1, row) : row));
 
 function sentence(image, angles) {

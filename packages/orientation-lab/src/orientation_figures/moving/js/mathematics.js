@@ -1,7 +1,7 @@
 import { PROPER_EULER, TAIT_BRYAN, axisAngleComponents, bodyFixedFromDcm, dcmFromBodyFixed, dcmFromQuaternion,
   quaternionFromDcm } from './formulas.js';
 
-// What goes with the formulas of the module, which formulas.js has: vectors and matrices, and what is no formula but a
+// What complements the formulas of the module in formulas.js: vectors and matrices, and what is not a formula but a
 // search or a message. A matrix is three rows.
 export { PROPER_EULER, TAIT_BRYAN, angularAcceleration, angularVelocityMatrix, bodyFixedFromDcm, dcmFromAxisAngle,
   dcmFromBodyFixed, dcmFromQuaternion, dcmFromRotationVector, dcmRate, gimbalLockMargin, multiplyQuaternions,
@@ -15,7 +15,7 @@ export const several = (count, noun) => `${count} ${noun}${count === 1 ? '' : 's
 
 // Vectors and matrices.
 
-// Plain loops: these are called some thousand times for each picture.
+// Plain loops, because these run some thousand times for each picture.
 export function dot(u, v) {
   let sum = 0;
   for (let k = 0; k < u.length; k += 1) sum += u[k] * v[k];
@@ -41,7 +41,7 @@ export const multiply = (...matrices) => matrices.reduce((left, right) => {
 });
 // v_A = A_C_N v_N.
 export const times = (matrix, v) => matrix.map((row) => dot(row, v));
-// x where matrix x = v.
+// Return x such that matrix x = v.
 export function solve(matrix, v) {
   const [x, y, z] = transpose(matrix), whole = determinant([x, y, z]);
   return [determinant([v, y, z]), determinant([x, v, z]), determinant([x, y, v])].map((part) => part / whole);
@@ -52,7 +52,7 @@ export const distance = (first, second) => Math.hypot(...first.flatMap((row, k) 
 export const degrees = (angle) => angle * 180 / Math.PI;
 export const radians = (angle) => angle * Math.PI / 180;
 
-// Loops, as the pictures that are translated from Python have them.
+// Loops, as in the pictures translated from Python.
 
 export const range = (first, end) => Array.from({ length: end === undefined ? first : end - first },
   (_, k) => (end === undefined ? k : first + k));
@@ -60,9 +60,9 @@ export const enumerate = (list) => [...list].map((one, k) => [k, one]);
 export const zip = (first, ...others) => [...first].map((one, k) => [one, ...others.map((list) => list[k])]);
 export const sum = (numbers) => numbers.reduce((total, number) => total + number, 0);
 
-// What a matrix is, and which is near.
+// Properties of a matrix, and the nearest valid one.
 
-// As Python writes '%.6g', so that messages agree.
+// Format a number like Python's '%.6g', so that messages agree.
 export function general(value, digits = 6) {
   if (value === 0) return '0';
   const [mantissa, power] = value.toExponential(digits - 1).split('e');
@@ -71,7 +71,7 @@ export function general(value, digits = 6) {
   return `${Number(mantissa)}e${power < 0 ? '-' : '+'}${size < 10 ? '0' : ''}${size}`;
 }
 
-// What the rows are and what they should be: { rows: [i, j], value, wanted }.
+// Return the conditions on the rows: { rows: [i, j], value, wanted }.
 export function conditions(matrix) {
   return [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [2, 0]].map(([i, j]) => {
     const product = dot(matrix[i], matrix[j]);
@@ -80,7 +80,7 @@ export function conditions(matrix) {
   });
 }
 
-// Returns what check_dcm raises, or '' for a valid matrix.
+// Return the message that check_dcm raises, or '' for a valid matrix.
 export function checkDcm(matrix) {
   const [x, y, z] = matrix;
   const products = [[0, 0], [0, 1], [0, 2], [1, 1], [1, 2], [2, 2]].map(([i, j]) => [i, j, dot(matrix[i], matrix[j])]);
@@ -97,7 +97,7 @@ export function checkDcm(matrix) {
   const what = p === q ? `row ${AXES[p]} has length ${general(Math.sqrt(product), 12)}, not 1`
     : `rows ${AXES[p]} and ${AXES[q]} have dot product ${general(product)}, not 0`;
   const squares = [0, 3, 5].map((k) => products[k][2]), most = Math.max(...squares);
-  // A scale closer to 1 than that cannot be told from rounding.
+  // A scale closer to 1 than this cannot be distinguished from rounding.
   const scaled = worst > 1e-5 && most - Math.min(...squares) <= 1e-6 * most
     && [1, 2, 4].every((k) => Math.abs(products[k][2]) <= 1e-6 * most);
   let cause = 'An entry or a sign is wrong, or the rows are not unit vectors of one triad';
@@ -111,7 +111,7 @@ export function checkDcm(matrix) {
   return `dcm is not orthogonal: ${what}. ${cause}`;
 }
 
-// Eigenvalues, largest first, with their unit vectors, of a symmetric matrix: Jacobi's turns.
+// Return the eigenvalues of a symmetric matrix, largest first, with their unit vectors (Jacobi rotations).
 function eigenvectors(symmetric) {
   const size = symmetric.length, m = symmetric.map((row) => [...row]);
   const vectors = m.map((_, i) => m.map((__, j) => Number(i === j)));
@@ -136,15 +136,15 @@ function eigenvectors(symmetric) {
   return transpose(vectors).map((vector, k) => ({ value: m[k][k], vector })).sort((a, b) => b.value - a.value);
 }
 
-// The direction cosine matrix C(q) with the smallest distance from the matrix M has the largest sum of
-// products of their entries, q^T K q: the largest eigenvalue of K (Davenport's form of Wahba's problem).
-// `dcm` is null where several are equally near.
+// The direction cosine matrix C(q) with the smallest distance from the matrix M has the largest sum of products of
+// their entries, q^T K q, so q belongs to the largest eigenvalue of K (Davenport's form of Wahba's problem). `dcm` is
+// null if several are equally near.
 export function nearestDcm(matrix) {
   const [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = matrix;
   const [i, j, k] = [yz - zy, zx - xz, xy - yx];
   const [first, second] = eigenvectors([[xx + yy + zz, i, j, k], [i, xx - yy - zz, xy + yx, xz + zx],
     [j, xy + yx, yy - xx - zz, yz + zy], [k, xz + zx, yz + zy, zz - xx - yy]]);
-  // Half the sum of the two is the largest singular value, half their difference the sum of the others.
+  // Half the sum of the two is the largest singular value; half their difference is the sum of the others.
   if (first.value - second.value <= TOLERANCE * (first.value + second.value)) return { dcm: null, distance: NaN };
   const dcm = dcmFromQuaternion(unit(first.vector));
   return { dcm, distance: distance(dcm, matrix) };
@@ -170,15 +170,15 @@ export const axisAngleFromDcm = (dcm) => axisAngleFromQuaternion(quaternionFromD
 
 // Quaternions.
 
-// Along the great arc from one unit quaternion to another at constant speed. For the short way turn the
-// sign of one where their dot product is negative. Opposite ones have no one arc between them.
+// Interpolate along the great arc between two unit quaternions at constant speed. For the short way, reverse the sign
+// of one if their dot product is negative. Between opposite ones the arc is not unique.
 export function slerp(from, to, part) {
   const angle = 2 * Math.atan2(length(subtract(to, from)), length(add(to, from)));
   if (angle < 1e-9) return unit(add(scale(1 - part, from), scale(part, to)));
   return unit(add(scale(Math.sin((1 - part) * angle), from), scale(Math.sin(part * angle), to)));
 }
 
-// Points where there are decimal commas: one in each of three numbers or more, and no point.
+// Replace decimal commas by points if three or more numbers have one and none a point.
 export function decimalPoints(text) {
   const groups = (text.match(/\d[\d,]*\d|\d/g) ?? []).filter((group) => group.includes(','));
   if (/\d\.|\.\d/.test(text) || groups.length < 3 || groups.some((group) => group.split(',').length > 2)) return text;

@@ -1,7 +1,6 @@
-// The search of orientation_workbench.mismatch in the language of the page: what two programs mean differently by the
-// numbers that they give for the same poses. Readings, relations, costs and words are that package's one table, which
-// comes with the figure; here are the reader of text and the loops, held to the same cases by
-// tests/test_mismatch_in_the_page.py.
+// The search of orientation_workbench.mismatch in JavaScript: what two programs mean differently by the numbers they
+// give for the same poses. Readings, relations, costs and words come with the figure from that package's table. Here
+// are the reader of text and the loops; tests/test_mismatch_in_the_page.py checks both against the same cases.
 import { AXES, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
   dcmFromQuaternion, decimalPoints, determinant, distance, dot, IDENTITY, length, multiply, nearestDcm, quaternionFromDcm, scale,
   SEQUENCES, several, transpose, unit } from './mathematics.js';
@@ -11,9 +10,9 @@ const COUNT = { matrix: 9, quaternion: 4, 'Euler angles': 3, 'rotation vector': 
 export const TURNS = 'axes of the turns';
 const SAME_AXES = 'x y z', DEGREE = Math.PI / 180;
 
-// ---- what is pasted ------------------------------------------------------------------------------------
+// ---- reading the pasted text -----------------------------------------------------------------------------
 
-// What is made of a table, made once for each.
+// Cache what is derived from a table, once for each table.
 const onceFor = (make) => {
   const made = new WeakMap();
   return (table) => made.get(table) ?? made.set(table, make(table)).get(table);
@@ -30,11 +29,11 @@ const spellingOf = onceFor(({ spelling: said }) => {
     names: [[{ w: 0, x: 1, y: 2, z: 3 }, { order: 'wxyz' }], [PLACE_OF_ANGLE, said['yaw pitch roll']], [{ y: 0, p: 1, r: 2 }, said['yaw pitch roll']],
       [{ x: 0, y: 1, z: 2 }, {}]] };
 });
-// Whether there is a match; the pattern is a global one.
+// Check for a match; the pattern is a global one.
 const has = (pattern, text) => text.search(pattern) >= 0;
 const firstOf = (pattern, text) => text.match(pattern)?.[0].trim();
 
-// The poses in a text: what kinds they may be of, their numbers, half a unit of the last digit; an Error tells what
+// Return the poses in a text: their possible kinds, their numbers, half a unit of the last digit. An Error says what
 // was read and what is missing.
 export function readPoses(given, name, table, kind = null, noise = 0) {
   const { rows, half, declared } = rowsOf(given, name, spellingOf(table));
@@ -51,7 +50,7 @@ function rowsOf(given, name, spelling) {
   let text = spelling.cleaning.reduce((cleaned, [pattern, replacement]) => cleaned.replace(pattern, replacement), given);
   const parts = spelling.parts.filter(([pattern]) => pattern.test(text));
   const bare = text.replace(spelling.comment, '');
-  if (has(spelling.number, bare)) text = bare;   // what stands in comments alone was meant
+  if (has(spelling.number, bare)) text = bare;   // if only the comments contain numbers, they are meant
   text = withoutPlaces(decimalPoints(text), spelling);
   const wrong = firstOf(spelling['not a number'], text), arithmetic = firstOf(spelling.arithmetic, text);
   if (wrong) throw new Error(`the ${name} side contains '${wrong}', which is not a number`);
@@ -74,14 +73,14 @@ function rowsOf(given, name, spelling) {
   return { rows, half, declared: { ...declared, ...(said ? said[1] : {}), ...ordered } };
 }
 
-// What stands between the marks of a line of a table, or between its spaces.
+// Return the fields of a line of a table, split at separators or else at spaces.
 function fieldsOf(line, spelling) {
   const bare = line.trim().replace(/^\|+|\|+$/g, ''), parted = has(spelling.parting, bare) ? bare.trim().split(spelling.parting) : bare.trim().split(/\s+/);
   const fields = parted.filter((field, k) => field || k || parted.length > 1).map((field) => field.replace(spelling['around a field'], ''));
   return fields.length && !fields.at(-1) ? fields.slice(0, -1) : fields;
 }
 
-// The rows of a table under a line that names its columns; null where none does.
+// Return the rows of a table with column names, or null without.
 function columnsOf(given, spelling) {
   const lines = spelling.cleaning.slice(0, 4).reduce((cleaned, [pattern, replacement]) => cleaned.replace(pattern, replacement), given).split('\n');
   for (const [place, line] of lines.entries()) {
@@ -97,7 +96,7 @@ function columnsOf(given, spelling) {
   return null;
 }
 
-// Which columns hold an orientation, in the order in which they are read, and what their names say of them.
+// Return the columns that hold an orientation, in order, and what their names declare.
 function namedColumns(names, spelling) {
   const bare = names.map((name) => name.replace(spelling['unit of a column'], ''));
   const entries = bare.map((name, column) => [[...name.matchAll(spelling['entry of a matrix'])][0], column]).filter(([found]) => found);
@@ -107,7 +106,7 @@ function namedColumns(names, spelling) {
     for (const [place, more] of spelling.names.slice(0, 2)) {
       const each = Array.from({ length: Math.max(...Object.values(place)) + 1 }, (_, at) => keys.flatMap((key, column) => (Object.hasOwn(place, key) && place[key] === at ? [column] : [])));
       if (each.every((columns) => columns.length === 1)) {
-        // As they stand, so that what is said of the numbers holds for the reader's own.
+        // Keep the order of the columns, so that messages about the numbers match the reader's.
         const order = each.map((_, at) => at).sort((left, right) => each[left][0] - each[right][0]), [name, letters] = more.order ? ['order', 'wxyz'] : ['places', '123'];
         return { which: order.map((at) => each[at][0]), more: { ...more, [name]: order.map((at) => letters[at]).join('') } };
       }
@@ -117,12 +116,12 @@ function namedColumns(names, spelling) {
 }
 
 function rowsOfLines(text, spelling) {
-  // Where one number stands between semicolons, they part columns, as in a spreadsheet's file.
+  // Semicolons with one number between them separate columns, as in a spreadsheet's file.
   const columns = text.split(/[\n;]/).every((piece) => (piece.match(spelling.number) ?? []).length < 2);
   return (columns ? text.replaceAll(';', ' ') : text).split(/[\n;]|\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{/).map((piece) => (piece.match(spelling.number) ?? []).map(Number)).filter((row) => row.length);
 }
 
-// Names in the place of i, j and k, where quaternions are written as sums.
+// Replace i, j and k by names if quaternions are written as sums.
 function sums(text, spelling) {
   if (!has(spelling.sum, text)) return text;
   const joined = spelling.signs.reduce((cleaned, [pattern, replacement]) => cleaned.replace(pattern, replacement), text);
@@ -172,7 +171,7 @@ function halfUnit(found) {
 
 const blocks = (list, size) => Array.from({ length: list.length / size }, (_, k) => list.slice(k * size, (k + 1) * size));
 const rowsOfNine = (numbers) => [0, 3, 6].map((k) => numbers.slice(k, k + 3));
-// For each pair of rows how far their product is from that of a matrix with rows of length 1 at right angles.
+// For each pair of rows, return the difference of their product from that of orthonormal rows.
 const gapsOf = (dcm) => dcm.map((row, i) => dcm.map((other, j) => Math.abs(dot(row, other) - (i === j ? 1 : 0))));
 const orthogonal = (rows) => blocks(rows, 3).every((dcm) => gapsOf(dcm).flat().every((gap) => gap < 0.1));
 
@@ -205,10 +204,10 @@ function posesOf(rows, name, kind, half) {
     + 'next to a position, a quaternion must be four consecutive numbers of length 1');
 }
 
-// The nine entries of a matrix, as printed, out of those of one with a place.
+// The nine entries of a rotation matrix, even from one that includes a position.
 const nineOf = (row) => (row.length === 9 ? row : [0, 4, 8].flatMap((k) => row.slice(k, k + 3)));
 
-// Where in each row four numbers of length 1 stand together: last, first, or in one place only.
+// Return where each row has four numbers of length 1: last, first, or at one place only.
 function quaternionAmong(rows, half) {
   const width = rows[0].length;
   if ([9, 12, 16].includes(width) && orthogonal(blocks(rows.flatMap(nineOf), 3))) return null;
@@ -217,7 +216,7 @@ function quaternionAmong(rows, half) {
   return places.length === 1 || places[0] === 0 ? places[0] : null;
 }
 
-// As Python writes it: very large and very small numbers with a power of ten, of two digits.
+// Format a number like Python: very large and very small numbers have a power of ten with two digits.
 function short(value, digits = 6) {
   const rounded = Number(value.toPrecision(digits)), size = Math.abs(rounded);
   return size && (size >= 10 ** digits || size < 1e-4) ? rounded.toExponential().replace(/([-+])(\d)$/, '$10$2') : String(rounded);
@@ -252,7 +251,7 @@ function demandOrthogonal(numbers, doubt, name) {
   });
 }
 
-// ---- what numbers mean ---------------------------------------------------------------------------------
+// ---- the meaning of numbers ------------------------------------------------------------------------------
 
 const radiansOf = (choices) => (choices.unit === 'degrees' ? DEGREE : 1);
 const turnOf = (vector) => (length(vector) ? dcmFromAxisAngle(unit(vector), length(vector)) : rowsOfNine([1, 0, 0, 0, 1, 0, 0, 0, 1]));
@@ -317,7 +316,7 @@ function axesChoice(names, body, table) {
   return { words: `the ${whose}'s axes x, y, z are called ${parts.join(', ')} by the other program`, rarity: 0.6, faults: 1 };
 }
 
-// What two programs differ by as their manuals have it: as expected_relation of the table in Python.
+// Return the difference that two programs' manuals predict, like expected_relation in Python.
 function expectedRelation(programs, kinds, table) {
   if (!programs[0] || !programs[1]) return { inverse: false, body: SAME_AXES, world: SAME_AXES };
   const axes = ['body', 'world'].map((what) => {
@@ -330,13 +329,13 @@ function expectedRelation(programs, kinds, table) {
   return { inverse: turned[0] !== turned[1], body: axes[0], world: axes[1] };
 }
 
-// The axes that come of renaming twice: first as others says, then as names does.
+// Return the axes after renaming them twice, first by others and then by names.
 const after = (names, others) => names.split(' ').map((name) => {
   const other = others.split(' ')['xyz'.indexOf(name.at(-1))];
   return name.length > 1 ? opposite(other) : other;
 }).join(' ');
 
-// A relation that departs from the expected one as this one departs from none; its words stay what they were.
+// Return the relation applied on top of the expected one, with its own words.
 function beyond(relation, expected) {
   const [body, world] = relation.inverse ? [expected.world, expected.body] : [expected.body, expected.world];
   const names = { body: after(relation.body, body), world: after(relation.world, world) };
@@ -353,7 +352,7 @@ export function* relationsOf(mirrored, table) {
       for (const world of axes) {
         if ((body.left !== world.left) !== mirrored) continue;
         const hand = body.names === world.names && body.names.replaceAll('-', '') === SAME_AXES && body.names.split('-').length === 2;
-        // The rows of an inverse are the world's axes: they are said of the world.
+        // The rows of an inverse are the world's axes, so describe them as the world's.
         const [one, other] = inverse ? [body.world, world.body] : [body.body, world.world];
         const faults = (hand ? 1 : one.faults + other.faults) + inverse, rarity = hand ? 0.1 : one.rarity + other.rarity;
         if (faults > table['most faults']) continue;
@@ -372,7 +371,7 @@ export function* relationsOf(mirrored, table) {
 
 const isShared = (group, value, table) => table.shared.some(([own, one]) => own === group && one === value);
 
-// Faults, rarity and words of the readings of both sides; what both do alike is no fault.
+// Return faults, rarity and words of both sides' readings; what both do alike is not a fault.
 function ofBoth(first, second) {
   const alike = first.shared.filter((words) => second.shared.includes(words));
   const units = unitChanges(first, second) ? [`the first numbers are in ${first.unit}, the second in ${second.unit}`] : [];
@@ -404,12 +403,12 @@ function readingsOf(kind, declared, large, table) {
   return partial;
 }
 
-// Whether the unit changes between two readings, and the sequence, where not both are declared.
+// Whether the unit, or the sequence, changes between two readings unless both are declared.
 const unitChanges = (first, second) => Boolean(first.unit && second.unit && first.unit !== second.unit && !(first.known.unit && second.known.unit));
 const sequenceChanges = (one, other) => Boolean(one.letters && other.letters && one.letters !== other.letters && one.canonical !== other.canonical
   && !(one.known.sequence && other.known.sequence));
 
-// Readings that mean the same by any numbers: space fixed is body fixed from behind.
+// Return a key shared by equivalent readings: space fixed is body fixed in reverse order.
 function readingKey({ kind, choices }) {
   if (choices['axes of the turns'] !== 'space fixed') return kind + JSON.stringify(choices);
   return kind + JSON.stringify({ ...choices, 'axes of the turns': 'body fixed', sequence: [...choices.sequence].reverse().join(''),
@@ -424,7 +423,7 @@ const costOf = ({ faults, rarity }) => Math.round((faults + rarity) * 1e6), pric
 function sideOf(poses, declared, table, noise) {
   const cheapest = new Map();
   for (const kind of poses.kinds) {
-    // Of an axis and its angle, wherever that stands, only the angle can be large.
+    // Of an axis and its angle, in either order, only the angle can be large.
     const large = kind !== 'quaternion' && poses.numbers.flat().some((value) => Math.abs(value) > 2 * Math.PI + 0.01);
     for (const reading of readingsOf(kind, declared, large, table)) {
       const key = readingKey(reading), held = cheapest.get(key);
@@ -436,14 +435,14 @@ function sideOf(poses, declared, table, noise) {
     return { reading, dcms, flat: dcms.map((dcm) => dcm.flat()), fourth: dcms.map(fourthPowers), doubt: doubtOf(reading, poses.half), moves: motionOf(dcms) };
   });
   if (!noise) return side;
-  // Small angles that are taken for degrees hardly move: within the noise anything fits them.
+  // Small angles read as degrees hardly move, and within the noise anything fits them.
   const some = side.filter(({ moves, doubt }) => moves >= MOTION * (doubt + noise));
-  // That refuses all where it holds of a reading that is no mix-up, or none if both sides have it.
+  // Refuse the input if this would exclude a reading that is not a fault, or one that both sides may share.
   if (!side.some((one) => !some.includes(one) && (one.reading.faults === 0 || (one.reading.kind === 'quaternion' && one.reading.shared.length)))) return some;
   throw new Error(`the tolerance is ${short(noise / DEGREE, 3)} degrees, but the numbers describe a rotation of only ${short(Math.min(...side.map(({ moves }) => moves)) / DEGREE, 3)} degrees, too small to judge. Give larger rotations, or a smaller tolerance`);
 }
 
-// Radians of the largest turn in some poses, whatever their hand.
+// Return the largest angle of rotation in some poses, in radians, whatever their handedness.
 function motionOf(dcms) {
   const hand = Math.sign(determinant(dcms[0])), across = Math.max(...dcms.map((dcm) => distance(dcm.map((row) => scale(hand, row)), IDENTITY)));
   return 2 * Math.asin(Math.min(1, across / Math.sqrt(8)));
@@ -461,8 +460,8 @@ function gapOf(relation, first, second) {
   return gap;
 }
 
-// The relations of two sides as they depart from what is expected, and those of up to so many faults: kept, for they are
-// thousands.
+// The relations of two sides relative to the expected one, and those of each number of faults. They are cached, because
+// there are thousands.
 const KEPT = onceFor(() => new Map());
 function* expectedRelations(mirrored, expected, table) {
   const aside = determinant(axesMatrix(expected.body)) !== determinant(axesMatrix(expected.world));
@@ -481,9 +480,9 @@ function* chainsOf(first, second, noise, table, expected, special) {
   yield;
   for (const one of first) {
     yield;
-    one.turned = [];   // made as they are needed: those of few faults come first
+    one.turned = [];   // filled on demand, since readings with few faults come first
     for (const other of second) {
-      // This runs up to a million times: no more is worked out than what decides.
+      // This runs up to a million times, so compute only what decides.
       let faults = one.reading.faults + other.reading.faults;
       if (one.reading.shared.length && other.reading.shared.length) for (const words of one.reading.shared) if (other.reading.shared.includes(words)) faults -= 2;
       faults += unitChanges(one.reading, other.reading) + sequenceChanges(one.reading, other.reading);
@@ -495,7 +494,7 @@ function* chainsOf(first, second, noise, table, expected, special) {
       if (alike) pairs[faults].push([one, other, tolerance]);
     }
   }
-  // Angles have a thousand readings: what takes two faults more than the simplest is not said.
+  // Angles have a thousand readings, so we drop those with two faults more than the simplest.
   const angles = Math.max(first.length, second.length) > 24;
   let lowest = most;
   for (let level = 0; level <= most && (!angles || (level <= lowest + 1 && fits.length <= MANY)); level += 1) {
@@ -524,14 +523,14 @@ function* chainsOf(first, second, noise, table, expected, special) {
   return { fits, tried };
 }
 
-// ---- causes inside: angles or a quaternion handed on, as in orientation_workbench.mismatch.search ----------
+// ---- internal causes: exchanged angles or quaternions, as in orientation_workbench.mismatch.search ----------
 
 const PERMUTED = ['123', '132', '213', '231', '312', '321'], MISREAD = ['xyzw', 'zwxy'];
 const INNER = [...SEQUENCES.flatMap((read) => SEQUENCES.flatMap((built) => PERMUTED.map((places) => ({ inside: ['angles', read, built, places],
   rarity: (['123', '321'].includes(places) ? 0.2 : 0.4) - 0.1 * (built === [...read].reverse().join('') && places === '321')
     + 0.4 * (read[0] === read[2] || built[0] === built[2]) })))), ...MISREAD.map((order) => ({ inside: ['quaternion', 'wxyz', order, ''], rarity: 0.1 }))];
 
-// One matrix is handed to hundreds of causes.
+// The same matrix is tried with hundreds of causes.
 const nearest = onceFor((given) => nearestDcm(given).dcm), anglesOf = onceFor(() => ({}));
 
 function afterInside([what, read, built, places], given) {
@@ -544,7 +543,7 @@ function afterInside([what, read, built, places], given) {
   return dcmFromBodyFixed([...places].map((place) => angles[place - 1]), built);
 }
 
-// Those that are no mere renaming of axes, and the known ones that are.
+// The relations that are not mere renamings of axes, and the known ones that are.
 const DISTINCT = new WeakMap();
 function* distinctOf(table) {
   if (DISTINCT.has(table)) return DISTINCT.get(table);
@@ -584,7 +583,7 @@ function* insideOf(first, second, noise, table, fits, tried, most) {
           const residual = gapOf({ ...relation }, dcms, other.dcms);
           if (residual > tolerance || both.faults + 1 + inverse > most || gapOf(relation, dcms, one.dcms) <= tolerance) return;
           const { inside, rarity } = causes[k];
-          // A quaternion that stands on one side is read otherwise there, and not on the way.
+          // If one side gives a quaternion, the fault is in reading that side rather than inside.
           if (inside[0] === 'quaternion' && !(one.reading.kind === 'matrix' && other.reading.kind === 'matrix')) return;
           fits.push({ first: one.reading, second: other.reading, relation: { ...relation, inside }, residual, faults: both.faults + 1 + inverse, rarity: both.rarity + rarity });
         });
@@ -593,7 +592,7 @@ function* insideOf(first, second, noise, table, fits, tried, most) {
   }
 }
 
-// The cheapest chain for each order, scalar first or last, of the quaternions in the best one.
+// Yield the cheapest chain for each order, scalar first or last, of the best one's quaternions.
 function* withOrders(best, first, second, noise, table, expected) {
   const { relations } = yield* expectedRelations(isMirrored(first, second), expected, table), cheapest = [];
   const usual = (side, reading) => side.filter((one) => one.reading === reading || (reading.kind === 'quaternion' && one.reading.choices.order in ORDERS));
@@ -606,7 +605,7 @@ function* withOrders(best, first, second, noise, table, expected) {
   return cheapest;
 }
 
-// A constant turn on the body's side, on the world's, or both: three poses tell one, four tell two.
+// Find a constant rotation on the body's side, the world's, or both: three poses determine one, four determine two.
 function mountingsOf(first, second, noise, table) {
   if (first[0].dcms.length < 3 || determinant(first[0].dcms[0]) < 0 || determinant(second[0].dcms[0]) < 0) return [];
   const found = [];
@@ -652,9 +651,9 @@ function constantTurns(start, end) {
   return [...turns, [body, multiply(transpose(multiply(body, start[0])), end[0])]];
 }
 
-// ---- which chains say the same, and which pose decides -----------------------------------------------------
+// ---- equivalent chains, and the pose that decides ----------------------------------------------------------
 
-// None of them special; those of Python are others.
+// Two generic orientations, other than those in Python.
 const SAMPLES = [[0.47, -0.63, 0.29, 0.55], [-0.21, 0.38, 0.74, -0.51]].map((parts) => dcmFromQuaternion(unit(parts)));
 
 function plainReading(kind, table) {
@@ -668,8 +667,8 @@ function samplesOf(kind, poses, table) {
   return SAMPLES.map((dcm) => numbersFromDcm(plain, dcm.map((row) => scale(hand, row)))[0]);
 }
 
-// What a chain predicts that the second side gives where the first gives these numbers, as keys: two chains that share
-// one are mathematically the same, for an orientation has two triples of Euler angles, and either may be printed.
+// Return, as keys, what a chain predicts for the second side from these numbers. Two chains that share a key are
+// mathematically the same: an orientation has two triples of Euler angles, and a program may print either.
 function predictionsOf(chains, samples, decimals, table) {
   const dcms = new Map(), factor = 10 ** decimals;
   return chains.map((chain) => {
@@ -681,7 +680,7 @@ function predictionsOf(chains, samples, decimals, table) {
   });
 }
 
-// Chains that do the same to whatever is pasted, together.
+// Group chains that are equivalent for all numbers.
 function classesOf(chains, poses, table) {
   const classes = [], owner = new Map(), samples = Object.fromEntries(poses.kinds.map((kind) => [kind, samplesOf(kind, poses, table)]));
   predictionsOf(chains, samples, 5, table).forEach((keys, k) => {
@@ -702,7 +701,7 @@ function turnedNumbers(reading, numbers, turns) {
 
 function* furtherPose(chains, readings, poses, special, table) {
   const further = table['further poses'], last = further.at(-1)[0];
-  // From a special pose a turn or two leave zeros in one side's numbers: special again.
+  // Starting from a special pose, a rotation or two leave zeros in one side's numbers.
   if (special || chains.length > LOOKED_AT || readings.length > READ_AS || chains.length === 1) return last;
   for (const [words, turns] of further) {
     let decides = true;
@@ -719,7 +718,7 @@ function* furtherPose(chains, readings, poses, special, table) {
 
 // ---- the answer ----------------------------------------------------------------------------------------
 
-// The faults; swapped says that the second side gives the inverse of what is meant: then body and world change places.
+// Return the faults; if the second side gives the inverse of what is meant (swapped), body and world change places.
 function relationWords({ first, second, relation: whole }, swapped, table, inverse = (whole.said ?? whole).inverse) {
   const relation = whole.said ?? whole, said = inverse ? [table.inverse[(first.kind === 'matrix') === (second.kind === 'matrix') ? second.kind : 'one matrix']] : [];
   if (whole.inside) return [insideWords(whole.inside), ...said];
@@ -730,7 +729,7 @@ function relationWords({ first, second, relation: whole }, swapped, table, inver
   return [...said, ...namedAxes(relation, swapped, table).map(({ words }) => words).filter(Boolean)];
 }
 
-// All signs of both reversed does the same: said is what is known, and then what is right-handed.
+// Reversing all signs of both does the same: prefer known axes, then right-handed ones.
 function namedAxes(relation, swapped, table) {
   const axes = swapped ? [relation.world, relation.body] : [relation.body, relation.world];
   const options = [axes, axes.map(opposite)].map((pair) => ({ named: pair.map((names, k) => axesChoice(names, k === 0, table)), left: determinant(axesMatrix(pair[0])) < 0 }));
@@ -744,7 +743,7 @@ function insideWords([what, read, built, places]) {
   return `intermediate angles were computed as ${[...read].join('-')} (body fixed) and combined as ${put}`;
 }
 
-// Whether the second side's numbers are the inverse of what is meant: all answers that are open.
+// Return all possible answers to whether the second side's numbers are inverted.
 function secondIsInverse({ first, second, relation: { inverse } }, ways) {
   const [one, other] = [first, second].map(({ kind }, k) => ways[k] ?? (kind === 'matrix' ? null : false));
   if (one === null && other === null) return [inverse, !inverse];
@@ -764,18 +763,18 @@ const limitOf = (chain, best) => {
 const orderShared = ({ first, second }) => first.choices.order === second.choices.order;
 const dearness = (chain) => costOf(chain) / 1e6 - (chain.relation.inverse && (chain.first.kind === 'matrix') !== (chain.second.kind === 'matrix'));
 
-// What both sides choose in a group, if they differ in it.
+// Return both sides' choices in a group if they differ.
 const bothOf = ({ first, second }, group) => {
   const chosen = [first, second].map(({ choices }) => choices[group]);
   return chosen.every(Boolean) && chosen[0] !== chosen[1] ? chosen : [];
 };
-// The group in which two triples of Euler angles differ and only a reader can choose, and both choices; else nothing.
+// Return the group and both choices that only a reader can decide for two triples of Euler angles, or nothing.
 const ofAngles = (chain, known) => {
   const group = (known.some(({ sequence }) => sequence) ? [TURNS] : ['sequence', TURNS]).find((name) => bothOf(chain, name).length);
   return [group, group ? bothOf(chain, group) : []];
 };
 
-// Descriptions of one relation that differ in axes or turns, none if all agree; and the question that decides.
+// Return descriptions of one relation that differ in axes or rotations, if any, and the question that decides.
 function namesOf(best, others, known, ways, table) {
   const names = [], seen = new Set(), [group] = ofAngles(best, known);
   const usual = others.filter((chain) => [chain.first, chain.second].every(({ choices: { order } }, k) => !order || (known[k].order ? order === known[k].order : order in ORDERS))
@@ -820,7 +819,7 @@ function namesOf(best, others, known, ways, table) {
   return { names, question: asked.join(' ') };
 }
 
-// How many chains of so few faults would fit as well by chance, were the second side's poses unrelated ones.
+// Estimate how many chains of so few faults would fit unrelated poses by chance.
 function chanceOf(best, first, tried) {
   const { dcms } = first.find(({ reading }) => reading === best.first), gap = Math.max(best.residual, SINGLE_PRECISION, Math.min(...first.map(({ doubt }) => doubt)));
   return dcms.reduce((share, dcm) => {
@@ -829,7 +828,8 @@ function chanceOf(best, first, tried) {
   }, tried.slice(0, best.faults + 1).reduce((sum, count) => sum + count, 0));
 }
 
-// Whether all poses share what leaves several readings open: an angle or a part that is zero, or two that are alike.
+// Check whether all poses share a property that leaves several readings open: an angle or a component that is zero, or
+// two that are equal.
 function isSpecial({ numbers, half }) {
   const near = 2 * half + SINGLE_PRECISION, count = numbers[0].length, sizes = numbers.map((pose) => pose.map(Math.abs));
   if (sizes[0].some((_, k) => sizes.every((pose) => pose[k] <= near))) return true;
@@ -844,7 +844,7 @@ export function explain(...given) {
   return step.value;
 }
 
-// As orientation_workbench.explain, in steps of a few milliseconds at most: { verdict, faults, residual, chains, furtherPose, poses } and the poses as read.
+// Yield in steps of a few milliseconds, and return what orientation_workbench.explain does, with the poses as read.
 export function* explaining(first, second, table, { firstDeclared = {}, secondDeclared = {}, firstProgram = '', secondProgram = '', noise = 0 } = {}) {
   const given = [[first, 'first', firstDeclared], [second, 'second', secondDeclared]];
   const programs = [firstProgram, secondProgram].map((program) => table.programs[program]), asTheirManualsSay = programs.every(Boolean);
@@ -854,7 +854,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
   });
   yield;
   const counts = sides.map(({ numbers }) => numbers.length);
-  if (Math.min(...counts) === 1 && Math.max(...counts) === 3) {   // three rows that are no matrix were taken for three triples
+  if (Math.min(...counts) === 1 && Math.max(...counts) === 3) {   // three rows that are not a matrix were read as triples
     const which = counts.indexOf(3);
     sides[which] = readPoses(given[which][0], given[which][1], table, 'matrix', noise);
     counts[which] = 1;
@@ -862,7 +862,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
   if (counts[0] !== counts[1]) {
     throw new Error(`the first side has ${several(counts[0], 'pose')} and the second ${counts[1]}: give the same poses on both sides, in the same order`);
   }
-  // What stands in the text goes before what the manual says, and what the reader says before both.
+  // The text overrides the manual, and the reader overrides both.
   const declared = sides.map((poses, k) => ({ ...programs[k]?.declared, ...poses.declared, ...given[k][2] }));
   const [one, other] = sides.map((poses, k) => sideOf(poses, declared[k], table, noise));
   yield;
@@ -881,7 +881,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
   yield;
   const [best] = chains, chance = chanceOf(best, one, tried);
   let verdict = chains.length > 1 || special || chance >= BY_CHANCE ? 'undecided' : 'named', asked = { names: [], question: '' };
-  // Of a special pose some sequence nearly always says the same.
+  // For a special pose, some sequence nearly always gives the same numbers.
   if (best.faults === 0 && (noise === 0 || chance < BY_CHANCE) && !(special && wordsOf(best, table, ways).length)) verdict = 'same';
   if (verdict === 'named') asked = namesOf(best, [...yield* withOrders(best, one, other, noise, table, expected), ...together[0]], declared, ways, table);
   if (asked.names.length) verdict = 'undecided';
@@ -895,7 +895,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
     furtherPose: !(verdict === 'undecided' || (verdict === 'same' && chains.length > 1)) || asked.names.length ? '' : yield* furtherPose(chains, [...new Set(fits.map((chain) => chain.first))], sides[0], special, table) };
 }
 
-// The orientations of both sides at one pose, as the simplest chain reads them: what is drawn.
+// Return the orientations to draw, those of both sides at one pose by the simplest chain.
 export function drawnDcms(explanation, table, pose) {
   return explanation.sides.map((poses, k) => {
     const chain = explanation.chains[0], reading = chain ? chain[k ? 'second' : 'first'] : plainReading(poses.kinds[0], table);
@@ -903,7 +903,7 @@ export function drawnDcms(explanation, table, pose) {
   });
 }
 
-// For each of the words of a chain the section of the book that teaches it and the questions on it, each [address, title].
+// For each fault of a chain, return the section that teaches it and the questions on it, each as [address, title].
 export function taughtBy(chain, table, ways) {
   const { first, second, relation: whole } = chain;
   const links = [], relation = whole.said ?? whole;
@@ -921,7 +921,7 @@ export function taughtBy(chain, table, ways) {
   return [...links, ...namedAxes(relation, secondIsInverse(chain, ways)[0], table).map(({ words }, k) => words && table.taught[k ? 'world' : 'body']).filter(Boolean)];
 }
 
-// ---- the line that mends it: as orientation_workbench.mismatch.mend ----------------------------------------
+// ---- the line that fixes it, as in orientation_workbench.mismatch.mend -------------------------------------
 
 const rowsInPython = (rows) => `[${rows.map((row) => `[${row.join(', ')}]`).join(', ')}]`;
 const inPython = (names) => `np.array(${rowsInPython(axesMatrix(names))})`;
@@ -977,7 +977,7 @@ export function mendingLine({ first, second, relation }) {
 
 const written = (rows) => `[${rows.map((row) => `[${row.map((entry) => String(Number(entry.toFixed(4)) + 0)).join(', ')}]`).join(', ')}]`;
 
-// How the second program's matrix follows from the first's.
+// Return a formula for the second program's matrix in terms of the first's.
 export function formulaOf({ relation }) {
   const left = relation['body turn'] ?? (relation.body === SAME_AXES ? null : axesMatrix(relation.body));
   const right = relation['world turn'] ?? (relation.world === SAME_AXES ? null : transpose(axesMatrix(relation.world)));

@@ -1,12 +1,12 @@
-// The part of anywidget's model that figures use, where no kernel's own is there. `told` is given what the reader
-// has changed, as soon as it is saved.
+// The part of anywidget's model that figures use, for pages without a kernel. `told` is called with what the reader has
+// changed, as soon as it is saved.
 export class Model {
   constructor(state, told = () => {}) {
     this.state = { ...state };
     this.told = told;
     this.heard = new Map();
     this.unsaved = {};
-    this.moved = {};   // what the reader has moved, and where it stands
+    this.moved = {};   // the reader's changes, by name
   }
 
   get(name) { return this.state[name]; }
@@ -15,13 +15,13 @@ export class Model {
     if (this.put(name, value)) this.unsaved[name] = value;
   }
 
-  // As if the reader had moved it there.
+  // Change the state as if the reader had done it.
   move(state) {
     for (const [name, value] of Object.entries(state ?? {})) if (name in this.state) this.set(name, value);
     this.save_changes();
   }
 
-  // What Python says: it need not be told again.
+  // Take values from Python, which need not be sent back.
   take(state) {
     for (const [name, value] of Object.entries(state)) {
       delete this.moved[name];

@@ -12,11 +12,11 @@ const SPIN = 4, FINER = 10, LARGEST = 1e4;
 
 // ---- the integration -----------------------------------------------------------------------------------
 
-// A reference is the angular velocity along A and a quaternion, found in fine steps. A state is a quaternion, the nine
-// entries of a matrix row by row and three Euler angles in the sequence zxy: each is given the reference's angular velocity.
+// A reference is the angular velocity along A and a quaternion, computed in fine steps. A state is a quaternion, the
+// nine entries of a matrix row by row and three Euler angles zxy, driven by the reference's angular velocity.
 const angleRates = (angles, omega) => solve(angularVelocityMatrix(angles, 'zxy'), omega);
 
-// One Runge-Kutta step from the slopes that it asks for at each stage.
+// Take one Runge-Kutta step, with a function for the slope at each stage.
 function rungeKutta(state, step, slopes) {
   const beyond = (far, slope) => state.map((value, k) => value + far * slope[k]);
   const first = slopes[0](state), second = slopes[1](beyond(step / 2, first)), third = slopes[1](beyond(step / 2, second));
@@ -33,7 +33,7 @@ const fine = (reference, step, moments) => {
 const rates = (state, omega) => [...quaternionRate(state.slice(0, 4), omega), ...dcmRate(rowsOf(state.slice(4, 13)), omega).flat(),
   ...angleRates(state.slice(13), omega)];
 
-// The turn of a step of the fourth order (Magnus), from the angular velocity at its two Gauss points.
+// Return a fourth-order step's rotation vector (Magnus), from the angular velocity at its two Gauss points.
 const GAUSS = [0.5 - Math.sqrt(3) / 6, 0.5 + Math.sqrt(3) / 6];
 function turnOf(step, moments, references) {
   const [one, other] = GAUSS.map((point) => {
@@ -43,7 +43,7 @@ function turnOf(step, moments, references) {
   return add(scale(step / 2, add(one, other)), scale(Math.sqrt(3) / 12 * step * step, cross(one, other)));
 }
 
-// The state one step later; the references are those of the finer steps in between.
+// Return the state one step later; the references are those of the finer steps in between.
 export function stepped(state, step, method, moments, references) {
   const slopes = [0, FINER / 2, FINER].map((k) => (at) => rates(at, references[k].slice(0, 3)));
   if (method === 'Euler') {
@@ -52,14 +52,14 @@ export function stepped(state, step, method, moments, references) {
   }
   const later = rungeKutta(state, step, slopes);
   if (method !== 'exponential') return later;
-  const turn = turnOf(step, moments, references), angle = length(turn);   // of which Euler angles have none
+  const turn = turnOf(step, moments, references), angle = length(turn);   // Euler angles have no such step
   return [...multiplyQuaternions(state.slice(0, 4), angle ? quaternionFromAxisAngle(turn, angle) : [1, 0, 0, 0]),
     ...multiply(dcmFromRotationVector(turn), rowsOf(state.slice(4, 13))).flat(), ...later.slice(13)];
 }
 
 const rowsOf = (list) => [list.slice(0, 3), list.slice(3, 6), list.slice(6, 9)];
 
-// The matrix that each description stands for; of a quaternion it is |q|^2 times an orthogonal one.
+// The matrix of each description; that of a quaternion is orthogonal up to the factor |q|^2.
 const MATRICES = { matrix: (state) => rowsOf(state.slice(4, 13)), quaternion: (state) => dcmFromQuaternion(state.slice(0, 4)),
   angles: (state) => dcmFromBodyFixed(state.slice(13), 'zxy') };
 
@@ -71,7 +71,7 @@ export function error(matrix, truth) {
   return dcm ? axisAngleFromDcm(dcm)[1] : NaN;
 }
 
-// A run is computed step by step as far as it is asked for, and keeps what it has computed.
+// A run is computed step by step as far as requested, and keeps its results.
 export class Run {
   constructor({ moments, axis, disturbance, method, step, restored }) {
     Object.assign(this, { step, method, restored, moments, axis: AXES.indexOf(axis) });
@@ -79,9 +79,9 @@ export class Run {
     this.momentum = unit(omega.map((entry, k) => entry * this.moments[k]));
     this.states = [[1, 0, 0, 0, ...IDENTITY.flat(), 0, 0, 0]];
     this.references = [[...omega, 1, 0, 0, 0]];
-    this.flips = [];   // the steps after which the spin axis has turned over
+    this.flips = [];   // the steps after which the spin axis has flipped
     this.every = Math.max(1, Math.round(SAMPLE / step));
-    this.curves = new Map();   // path data, longer with every sample
+    this.curves = new Map();   // path data that grow with every sample
     this.margin = 90;
     this.side = 1;
     this.sample();
@@ -108,7 +108,7 @@ export class Run {
 
   truth(k) { return dcmFromQuaternion(this.references[k].slice(3)); }
 
-  // Margin of the reference to lock, in degrees.
+  // Return the reference's margin to gimbal lock, in degrees.
   marginAt(k) { return degrees(gimbalLockMargin(bodyFixedFromDcm(this.truth(k), 'zxy'), 'zxy')); }
 
   faultAt(k, name) { return fault(MATRICES[name](this.states[k])); }
@@ -136,7 +136,7 @@ export class Run {
 
 // ---- words ---------------------------------------------------------------------------------------------
 
-// '0.0023', '4.1 × 10⁻⁷': two digits.
+// Format a number with two digits: '0.0023', '4.1 × 10⁻⁷'.
 function power(value) {
   if (!(value >= ROUNDING)) return Number.isNaN(value) ? '–' : '< 10⁻¹⁵';
   if (value >= 0.001 && value < 1000) return String(Number(value.toPrecision(2)));
@@ -146,7 +146,7 @@ function power(value) {
 
 const often = (count, middle) => [middle ? 'has not flipped yet' : 'does not flip', 'has flipped once', 'has flipped twice'][count] ?? `has flipped ${count} times`;
 
-// How the moment of one axis stands to the two others.
+// Compare the moment of one axis with the two others.
 function rank(moments, k) {
   const smaller = moments.filter((moment) => moment < moments[k]).length, larger = moments.filter((moment) => moment > moments[k]).length;
   if (smaller === 1 && larger === 1) return 'middle moment';
@@ -156,7 +156,7 @@ function rank(moments, k) {
 
 const listed = (moments) => `${moments.map((moment) => plain(moment)).join(', ')} g\u202fm²`;
 
-// Why no body has these moments of inertia, or ''.
+// Say why no body has these moments of inertia, or return ''.
 function impossible(moments) {
   const largest = Math.max(...moments), others = moments.reduce((sum, moment) => sum + moment) - largest;
   return largest <= others + 1e-9 ? '' : `No body has the moments of inertia ${listed(moments)}: the largest, ${
@@ -168,8 +168,8 @@ function impossible(moments) {
 const SETTINGS = ['moments', 'axis', 'disturbance', 'method', 'step', 'restored'];
 
 export function render({ model, el }) {
-  const alone = `description-${Math.random()}`;   // the buttons of one figure exclude each other, not those of the next
-  let run, made = '', refused = null;   // moments that the reader has set and that no body has
+  const alone = `description-${Math.random()}`;   // the buttons of one figure exclude only each other
+  let run, made = '', refused = null;   // moments that the reader has set but no body has
 
   const sheet = new Sheet({ bounds: [-180, -150, 180, 150], size: SIZE, changed: () => redraw(),
     name: 'The tumbling body with its triad A, drawn from the computed numbers. Dashed: the reference. H: the angular momentum.' });
@@ -181,7 +181,7 @@ export function render({ model, el }) {
     scrub(at);
     return scrub;
   } });
-  // The time slider does by keys what dragging in the plot does.
+  // The plot needs no keys of its own, because the time slider does with keys what dragging does here.
   plot.svg.removeAttribute('tabindex');
   plot.svg.removeAttribute('aria-roledescription');
   put(plot.svg, 'role', 'img');
@@ -224,7 +224,7 @@ export function render({ model, el }) {
   const heads = ['Drawn', 'departure from orthogonality', 'error (rad)'].map((text) => element('th', { scope: 'col' }, text));
   const aside = element('p', { class: 'aside' }), text = liveText();
 
-  // Beside the drawing, so that on a phone it stays in view with it.
+  // The clock is beside the drawing, so that it stays in view with it on a phone.
   const left = stage(sheet, text);
   left.append(element('div', { class: 'clock' }, clock.element, reset));
   const figure = open(el, left,

@@ -6,7 +6,7 @@ import { hatted } from './words_picture.js';
 
 const A = hatted('a'), N = hatted('n');
 const GOOD = [[0.8, 0.6, 0], [-0.48, 0.64, 0.6], [0.36, -0.48, 0.8]];
-// What readers meet: a matrix that is valid to the last digit, and five that are not.
+// Typical matrices: one that is valid to the last digit, and five that are not.
 const EXAMPLES = [
   ['Valid', GOOD],
   ['One decimal', [[0.8, 0.6, 0], [-0.5, 0.6, 0.6], [0.4, -0.5, 0.8]]],

@@ -10,8 +10,8 @@ const [N, B] = ['n', 'b'].map(hatted);
 const ANGLES = ['alpha', 'beta', 'gamma'];
 const COLUMNS = ['time_s', 'alpha_deg', 'beta_deg', 'gamma_deg', 'force_x', 'force_y', 'force_z', 'rate_x', 'rate_y', 'rate_z'];
 
-// An x-IMU that was carried about for sixteen seconds, eight times a second: its angles z-x-y in degrees. It is
-// made from the recording that comes with the book; a test compares the two.
+// Sixteen seconds of an x-IMU that was carried about, at eight samples a second: its angles z-x-y in degrees. They are
+// derived from the recording that comes with the book, and a test compares the two.
 const RECORDED = (
   '-150,-2,1 -150,-3,-1 -149,-3,0 -149,-3,0 -149,-3,0 -149,-3,0 -149,-3,0 -148,-3,0 -148,-3,0 -148,-3,0 ' +
   '-148,-3,0 -149,-2,0 -148,-2,0 -148,-2,0 -148,-2,0 -148,-2,0 -148,-2,0 -148,-2,0 -148,-2,0 -149,-2,0 ' +
@@ -28,25 +28,25 @@ const RECORDED = (
 ).split(' ').map((triple) => triple.split(',').map((angle) => radians(Number(angle))));
 const RECORDED_RATE = 8;
 
-// ---- what phones say, put right in one place -----------------------------------------------------------
+// ---- the events of phones, made consistent ----------------------------------------------------------------
 
-// Reads the events of a phone. All of them agree on the angles: degrees, body fixed z-x-y from the ground to the
-// phone. They differ in where alpha is zero, and in the sign of the acceleration.
+// Reads the events of a phone. All phones agree on the angles: degrees, body fixed z-x-y from the ground to the phone.
+// They differ in where alpha is zero, and in the sign of the acceleration.
 export class Sensors {
   constructor() {
-    this.north = null;    // what to add to alpha so that it counts from north; unknown at first
-    this.sign = null;     // +1 where the acceleration at rest points up, -1 where it points down
+    this.north = null;   // what to add to alpha so that it counts from north; unknown at first
+    this.sign = null;   // +1 if the acceleration at rest points up, -1 if it points down
     this.angles = null;
     this.force = null;
     this.rate = null;
   }
 
-  // An event of kind deviceorientation or deviceorientationabsolute.
+  // Read an event of kind deviceorientation or deviceorientationabsolute.
   orientation(event) {
     if (event.alpha === null || event.beta === null || event.gamma === null) return false;
     const [alpha, beta, gamma] = [event.alpha, event.beta, event.gamma].map(radians);
     if (event.absolute) this.north = 0;
-    // On iOS alpha counts from anywhere, and a compass comes with it: clockwise from north, for a phone that lies flat.
+    // On iOS alpha starts anywhere, but there is a compass: clockwise from north, for a phone that lies flat.
     const heading = event.webkitCompassHeading;
     if (this.north === null && heading >= 0 && Math.abs(event.beta) < 25 && Math.abs(event.gamma) < 25) {
       this.north = wrapped(-radians(heading) - alpha);
@@ -55,9 +55,9 @@ export class Sensors {
     return true;
   }
 
-  // An event of kind devicemotion. At rest an accelerometer is pushed up; phones of one maker report the opposite.
-  // The angles tell where up is, so the sign is found rather than believed.
-  // Returns whether anything was told: where there is no sensor, browsers send an empty event.
+  // Read an event of kind devicemotion. An accelerometer at rest measures an upward push, but one maker's phones report
+  // the opposite; the angles say where up is, so we determine the sign. Returns whether there were any values, because
+  // browsers without a sensor send an empty event.
   motion(event) {
     const felt = event.accelerationIncludingGravity, turning = event.rotationRate;
     const feels = felt && felt.x !== null, turns = turning && turning.alpha !== null;
@@ -70,7 +70,7 @@ export class Sensors {
       }
       this.force = this.sign === null ? null : scale(this.sign, force);
     }
-    // By the standard, and in every browser, alpha turns about x here, beta about y and gamma about z.
+    // By the standard, and in every browser, alpha is about x here, beta about y and gamma about z.
     if (turns) this.rate = [turning.alpha, turning.beta, turning.gamma].map(radians);
     return Boolean(feels || turns);
   }
@@ -79,7 +79,7 @@ export class Sensors {
 export const csv = (rows) => [COLUMNS.join(','), ...rows.map((row) => row.map(
   (value) => (Number.isFinite(value) ? String(Number(value.toFixed(5))) : '')).join(','))].join('\n') + '\n';
 
-// The orientation of the recording at a time, as angles.
+// Return the orientation of the recording at a time, as angles.
 export function recorded(time) {
   const place = Math.min(time * RECORDED_RATE, RECORDED.length - 1), k = Math.min(Math.floor(place), RECORDED.length - 2);
   const [from, to] = [RECORDED[k], RECORDED[k + 1]].map((angles) => quaternionFromDcm(dcmFromBodyFixed(angles, 'zxy')));
@@ -101,12 +101,12 @@ export function render({ model, el }) {
     show: (time) => { if (!alive) show(recorded(time)); } });
   const use = button('Use the sensors of this phone', ask);
   const record = button(`Record ${RECORD_SECONDS} seconds`, () => { rows = []; began = null; recording = true; say(); }, { disabled: '' });
-  const save = element('a', { class: 'button', download: 'phone.csv' }, 'Download phone.csv'); // there when it leads somewhere
+  const save = element('a', { class: 'button', download: 'phone.csv' }, 'Download phone.csv');   // shown once it has a link
   const copy = button('Copy for a cell', async () => {
     await navigator.clipboard.writeText(`phone = '''${file}'''\n`);
     text.say('Copied. Paste it into a cell, and phone will contain the text of the file.');
   }, { hidden: '' });
-  const light = () => {};   // these numbers mean what their headings say
+  const light = () => {};   // the headings explain these numbers
   const matrix = numberTable({ name: 'Direction cosine matrix of the phone with respect to the ground', kind: 'bracket', rows: B, columns: N,
     names: AXES.map((i) => AXES.map((j) => `b ${i} dot n ${j}`)), light });
   const quaternion = numberTable({ name: 'Quaternion, scalar first', columns: ['$q_0$', '$q_i$', '$q_j$', '$q_k$'],
@@ -124,7 +124,7 @@ export function render({ model, el }) {
       readout(['Quaternion'], quaternion.element), readout(['Specific force (m/s²)'], felt.element),
       readout(['Angular velocity (°/s)'], turning.element)));
 
-  // Phones of one maker want to be asked, in a click; others just begin to report.
+  // One maker's phones require permission, asked for in a click; others begin to report at once.
   async function ask() {
     for (const kind of [window.DeviceOrientationEvent, window.DeviceMotionEvent]) {
       if (!kind?.requestPermission) continue;
@@ -144,7 +144,7 @@ export function render({ model, el }) {
   }
 
   function listen() {
-    // Where there is an event with angles from north, the other one, which counts from anywhere, is not heard.
+    // If the browser has an event with angles from north, ignore the other one, which starts anywhere.
     window.addEventListener('ondeviceorientationabsolute' in window ? 'deviceorientationabsolute' : 'deviceorientation', turned);
     window.addEventListener('devicemotion', moved);
   }

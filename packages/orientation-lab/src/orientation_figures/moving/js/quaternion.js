@@ -140,19 +140,19 @@ function componentText(q, axis, theta, [i, j]) {
 
 // ---- from one orientation to another -------------------------------------------------------------------
 
-// The three ways, as functions of the share of the way; null where there is none.
+// Return the three ways as functions of the share of the way; null where a way does not exist.
 function waysBetween(first, second) {
   const [from, to] = [first, second].map((angles) => dcmFromBodyFixed(angles, SEQUENCE));
   const [q, p] = [from, to].map(quaternionFromDcm), product = dot(q, p), near = scale(product < 0 ? -1 : 1, p);
   const raw = (share) => from.map((row, k) => add(scale(1 - share, row), scale(share, to[k])));
   return { from, to, raw, dcms: [
-    // Half a turn apart both ways round are equally long.
+    // Orientations half a turn apart have two equally short ways.
     (share) => (Math.abs(product) > 1e-12 ? dcmFromQuaternion(slerp(q, near, share)) : null),
     (share) => dcmFromBodyFixed(add(scale(1 - share, first), scale(share, second)), SEQUENCE),
     (share) => nearestDcm(raw(share)).dcm] };
 }
 
-// Radians per second, from orientations a little before and after.
+// Return the speed in radians per second, from orientations a little before and after.
 function speedAt(way, share) {
   const before = way(Math.max(0, share - 1e-4)), after = way(Math.min(1, share + 1e-4));
   const passed = SECONDS * (Math.min(1, share + 1e-4) - Math.max(0, share - 1e-4));
@@ -204,20 +204,20 @@ function wayView(model) {
   return self;
 }
 
-// What is drawn of the ways: orientations at even times and the speeds between them.
+// Return what is drawn of the ways: orientations at even times and the speeds between them.
 function sampled(between) {
   const tracks = between.dcms.map((at) => Array.from({ length: SAMPLES + 1 }, (_, k) => at(k / SAMPLES)));
   const speeds = tracks.map((track) => track.slice(1).map((dcm, k) => angleBetween(track[k], dcm) * SAMPLES / SECONDS));
   return { ...between, tracks, speeds, angle: angleBetween(between.from, between.to), range: slowestAndFastest(between.dcms[1]) };
 }
 
-// The least and the greatest speed that the table shows on a way, also between the even times.
+// Return the smallest and the largest speed on a way for the table, even between the even times.
 function slowestAndFastest(way) {
   const speeds = Array.from({ length: SAMPLES + 1 }, (_, k) => speedAt(way, k / SAMPLES));
   return [Math.min, Math.max].map((best) => {
     const k = speeds.indexOf(best(...speeds));
     let early = Math.max(0, k - 1) / SAMPLES, late = Math.min(SAMPLES, k + 1) / SAMPLES;
-    for (let step = 0; step < 24; step += 1) { // in thirds: the one without the better of two speeds is left out
+    for (let step = 0; step < 24; step += 1) {   // ternary search: drop the third beyond the worse of two speeds
       const [one, other] = [early + (late - early) / 3, late - (late - early) / 3];
       if (best(speedAt(way, one), speedAt(way, other)) === speedAt(way, one)) late = other;
       else early = one;

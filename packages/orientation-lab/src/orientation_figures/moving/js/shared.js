@@ -29,7 +29,7 @@ export function element(tag, attributes = {}, ...children) {
   return made;
 }
 
-// Set an attribute or a text only if it changed: writing costs more than comparing.
+// Set an attribute or a text only if it changed, since writing costs more than comparing.
 export function put(target, name, value) {
   if (target.getAttribute(name) !== value) target.setAttribute(name, value);
 }
@@ -51,7 +51,7 @@ function glyphs(tex) {
     d: OUTLINES[outline], transform: `translate(${x} ${y})${size === 1 ? '' : ` scale(${size})`}` }));
 }
 
-// A formula, typeset in a line of text.
+// Return a formula, typeset in a line of text.
 function formula(tex) {
   const parts = glyphs(tex), [left, top, right, bottom] = LABELS[tex].ink;
   return element('svg', { class: 'formula', viewBox: `${left} ${top} ${right - left} ${bottom - top}`, role: 'img',
@@ -63,8 +63,8 @@ function formula(tex) {
 
 export const words = (text) => text.split('$').map((part, k) => (k % 2 ? formula(part) : part)).filter((part) => part !== '');
 
-// The text of an element, with $...$ in it. While only numbers change the formulas stay, because typesetting
-// them again would be most of the work of a drag.
+// Set the text of an element, with $...$ in it. Formulas stay while only numbers change, because typesetting them again
+// would be most of the work of a drag.
 const written = new WeakMap();
 export function writeWords(target, text) {
   const before = written.get(target) ?? [], parts = text.split('$');
@@ -82,12 +82,12 @@ export function fixed(value, digits = 3) {
   return (value < 0 && Number(text) !== 0 ? '\u2212' : '\u2007') + text;
 }
 
-// '35', '-12.5': degrees for a field, without the rounding error of the conversion.
+// Format degrees for a field, such as '35' or '-12.5', without the rounding error of the conversion.
 export const plain = (value, digits = 2) => String(Number(value.toFixed(digits)) + 0);
 
 // ---- cameras -------------------------------------------------------------------------------------------
 
-// V_C_N of an upright camera, as orientation_figures.drawing.view_from.
+// Return V_C_N of an upright camera, like orientation_figures.drawing.view_from.
 export function viewFrom(azimuth, elevation) {
   const [x, y, z] = multiply(simpleDcm('y', -elevation), simpleDcm('z', azimuth));
   return [y, z, x];
@@ -111,13 +111,13 @@ function pathData(commands, points) {
 
 const polygon = (count) => `M${'L'.repeat(count - 1)}Z`;
 
-// A sheet is drawn again for every picture, by `draw(sheet => ...)`, with the methods of
-// orientation_figures.words. It keeps its elements and changes only the differences. Marks are sorted by
-// their depth, the component of their middle along v_z, within the `layer` in which they are drawn.
+// A sheet is drawn again for every picture, by `draw(sheet => ...)`, with the methods of orientation_figures.words. It
+// keeps its elements and changes only the differences. Marks are sorted by the depth of their middle, along v_z, within
+// the `layer` in which they are drawn.
 export class Sheet extends Words {
-  // bounds: left, top, right, bottom in pixels from the origin; camera: azimuth and elevation in degrees;
-  // changed: called when the reader turns the view; grab(part, at): what to do when the reader takes hold of
-  // a grip; it returns a function of where the pointer is, or nothing to turn the view.
+  // bounds: left, top, right, bottom in pixels from the origin; camera: azimuth and elevation in degrees; changed:
+  // called when the reader rotates the view; grab(part, at): called when the reader takes hold of a grip, returns a
+  // function of the pointer's position, or nothing to rotate the view.
   constructor({ name, bounds: [left, top, right, bottom], size = 120, camera = [32, 24], changed, grab }) {
     super();
     this.size = size;
@@ -153,7 +153,7 @@ export class Sheet extends Words {
     event.preventDefault();
   }
 
-  // The position of the pointer, in pixels of the sheet.
+  // Return the position of the pointer, in pixels of the sheet.
   pointer(event) {
     const place = new DOMPoint(event.clientX, event.clientY).matrixTransform(this.toSheet);
     return [place.x, place.y];
@@ -223,17 +223,17 @@ export class Sheet extends Words {
     return this;
   }
 
-  // The point of N that is seen at a place of the sheet.
+  // Return the point of N that is seen at a place of the sheet.
   placed(right, down) {
     return times(transpose(this.view), [right / this.size, -down / this.size, 0]);
   }
 
-  // A fading label is either visible or not: it could not be read if it were transparent.
+  // A fading label is either visible or not, because a transparent one would be illegible.
   text(text, place, colour, size = 20, opacity = 1) {
     if (opacity <= 0.4) return this;
     const tex = text.replaceAll('$', ''), [, labels] = this.pools;
     let name = tex;
-    while (this.used[0].has(name)) name += '\'';   // the same text may stand in two places
+    while (this.used[0].has(name)) name += '\'';   // the same text may be in two places
     this.used[0].add(name);
     if (!labels.has(name)) labels.set(name, this.layers[1].appendChild(element('g', {}, ...glyphs(tex))));
     const made = labels.get(name);
@@ -242,7 +242,7 @@ export class Sheet extends Words {
     return this;
   }
 
-  // A grip for the reader; `part` is passed to grab(part, at).
+  // Add a grip for the reader; `part` is passed to grab(part, at).
   grip(point, part, radius = 18) {
     const [x, y] = this.onSheet(point), made = this.gripElement(part, 'circle');
     put(made, 'r', String(radius));
@@ -250,7 +250,7 @@ export class Sheet extends Words {
     put(made, 'cy', y.toFixed(1));
   }
 
-  // A grip along a closed line.
+  // Add a grip along a closed line.
   gripLine(points, part) {
     put(this.gripElement(part, 'path'), 'd', pathData(polygon(points.length), points.map((p) => this.onSheet(p))));
   }
@@ -319,13 +319,13 @@ export function numberField({ name, step = 0.1, min = -Infinity, max = Infinity,
       put(field, 'aria-invalid', String(!valid));
       if (valid) change(value);
     },
-    // A decimal comma is written as a point, because many browsers leave it out without a word.
+    // A decimal comma is written as a point, because many browsers silently omit it.
     beforeinput(event) {
       if (event.data !== ',') return;
       event.preventDefault();
       document.execCommand('insertText', false, '.');
     },
-    // Outside the range, an angle is brought into the turn, and any other number to the nearest end.
+    // Outside the range, wrap an angle into one turn, and move any other number to the nearest end.
     change() {
       const value = field.valueAsNumber, whole = max - min === 360;
       if (value >= min && value <= max) return;
@@ -414,7 +414,7 @@ export function numberTable({ name, names, rows, columns, light, kind = '' }) {
   })) };
 }
 
-// Text under the figure. It changes at once on the screen, and is read aloud when it has not changed for a while.
+// Text under the figure. It changes at once on screen, and is read aloud once it has stayed the same for a while.
 export function liveText() {
   const seen = element('p', { class: 'words', 'aria-hidden': 'true' }), heard = element('p', { class: 'unseen', role: 'status' });
   let now = null, wait = 0;
@@ -435,7 +435,7 @@ export function onceAFrame(draw) {
   return () => { asked ||= requestAnimationFrame(() => { asked = 0; draw(); }); };
 }
 
-// The value of a generator, run for a few milliseconds at a time so that the page stays responsive, as long as it is wanted.
+// Return the value of a generator, run in slices of a few milliseconds to keep the page responsive, while it is wanted.
 export async function inSlices(steps, isWanted) {
   for (;;) {
     await new Promise((resume) => { setTimeout(resume); });
@@ -454,7 +454,7 @@ export function player({ name, seconds, step = 0.05, show }) {
   const time = slider({ symbol: '$t$', name, unit: 'seconds', sign: 's', factor: 1, min: 0, max: seconds, step, more: () => '',
     change: (value) => { pause(); set(value); } });
   const press = button('Play', () => (frame ? pause() : play()));
-  // The position in the state.
+  // Set the position in the state.
   function at(value) {
     now = value;
     time.show(value);
@@ -508,9 +508,9 @@ export const readout = (title, ...parts) => element('div', { class: 'readout' },
 // The drawing with the text under it; on a narrow screen it stays in view while the controls scroll.
 export const stage = (sheet, text) => element('div', { class: 'stage' }, sheet.svg, text.element);
 
-// ---- beginning and end ---------------------------------------------------------------------------------
+// ---- opening and closing ---------------------------------------------------------------------------------
 
-// The element that a figure fills: on a page of the book the one beside the still, else a new figure.
+// Return the element that a figure fills: beside the still on a page of the book, or else a new figure.
 export function open(el, ...children) {
   const live = element('div', { class: 'live' }, ...children);
   if (!el.closest('.moving')) el.append(element('div', { class: 'orientation-figure moving' }, live));
@@ -530,7 +530,7 @@ export function change(model, values) {
   model.save_changes();
 }
 
-// Whether foreign data have the form of the known data: numbers for numbers, and equally many.
+// Check whether foreign data have the structure of known data: numbers for numbers, and as many of them.
 function alike(value, known) {
   if (typeof known === 'number') return Number.isFinite(value) && Math.abs(value) < 1e6;
   if (Array.isArray(known)) {
@@ -542,19 +542,19 @@ function alike(value, known) {
   return typeof known === 'boolean' || value.length <= 200;
 }
 
-// The state of a figure in the address of its page, by its label or kind; if it is alone, by any name.
+// Return the state of a figure from the address of its page, by its label or kind; if it is alone, by any name.
 function carriedTo(figure, name, state) {
   try {
     const carried = carriedBy(location.hash), label = figure.parentElement?.closest('figure[id], div[id]')?.id;
     if (!carried || (label && ![name, label].includes(carried.place))) return {};
     return Object.fromEntries(Object.entries(carried.content).filter(([key, value]) => key in state && alike(value, state[key])));
   } catch {
-    return {};   // an address that is not whole opens the figure as it is at first
+    return {};   // an incomplete address opens the figure in its initial state
   }
 }
 
-// Once a figure has been moved, the link at the end of its caption appears, leads to the figure in its
-// present state, and copies that address.
+// Once a figure has been moved, show the link at the end of its caption, which leads to the figure in its present state
+// and copies that address.
 function offerAddress(figure, first) {
   const whole = figure.parentElement?.closest('figure[id]'), link = whole?.querySelector('figcaption a.headerlink');
   if (!link) return;
@@ -572,7 +572,7 @@ function offerAddress(figure, first) {
   for (const type of ['pointerup', 'keyup', 'change', 'click']) figure.addEventListener(type, renew);
   for (const type of ['pointerenter', 'focus']) link.addEventListener(type, renew);
   link.addEventListener('click', async () => {
-    renew();   // where nothing may be copied, the address stands in the bar
+    renew();   // where copying is not allowed, the address is in the bar
     if (!link.matches('[data-moved]') || !await navigator.clipboard?.writeText(link.href).then(() => true, () => false)) return;
     link.textContent = 'copied';
     setTimeout(() => { link.textContent = mark; }, 2000);

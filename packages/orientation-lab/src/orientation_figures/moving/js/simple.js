@@ -9,9 +9,9 @@ const [N, A] = ['n', 'a'].map(hatted);
 const STEP = radians(5);
 const number = (value) => fixed(value).trim();
 
-// One turn about a unit vector that two frames share: in space, down that vector, and as a matrix.
+// One rotation about a unit vector that two frames share: in space, down that vector, and as a matrix.
 export function render({ model, el }) {
-  let lit = null;   // the number that is touched: [row, column]
+  let lit = null;   // the number that the reader touches: [row, column]
   const light = (i, j) => {
     lit = i === undefined ? null : [i, j];
     redraw();
@@ -27,7 +27,7 @@ export function render({ model, el }) {
     name: 'Triads of the frames N and A, which share one unit vector, in space.', grab: (part, at) => grab(space)(part, at) });
   const flat = new Sheet({ bounds: [-135, -128, 135, 128], size: FLAT,
     name: 'The same, looking down the shared unit vector.', grab: (part, at) => grab(flat)(part, at) ?? (() => {}) });
-  // This view stays: the arrow keys turn the frame instead.
+  // This view is fixed, so the arrow keys rotate the frame instead.
   flat.svg.setAttribute('aria-label', 'The same, looking down the shared unit vector. The arrow keys turn A.');
   flat.look = () => {};
   flat.press = (event) => {
@@ -51,7 +51,7 @@ export function render({ model, el }) {
   function draw() {
     const k = shared(), theta = model.get('angle');
     const now = { k, theta, dcm: simpleDcm(AXES[k], theta) };
-    // The next two letters on the way round x, y, z, x: to the right and up.
+    // The next two letters in the cycle x, y, z, x point to the right and up.
     flat.view = [IDENTITY[(k + 1) % 3], IDENTITY[(k + 2) % 3], IDENTITY[k]];
     angle.show(theta);
     axis.show(AXES[k]);

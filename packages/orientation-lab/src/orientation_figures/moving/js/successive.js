@@ -118,7 +118,7 @@ function factor(letter, k) {
     if (!turn) return;
     put(box, 'data-made', String(made));
     const [axis, angle] = turn, body = kind === 'body', entries = simpleDcm(axis, angle).flat();
-    // Body fixed turns stand to the left of those before, space fixed ones to the right.
+    // Body fixed rotations are to the left of those before, space fixed ones to the right.
     box.style.order = body ? count - k : k;
     writeWords(head, body ? dcmName(letter, LETTERS[k]) : `$\\mathbf{C}_${axis}$`);
     writeWords(foot, `${hat(body ? LETTERS[k] : 'N', axis)} ${angleText(angle)}`);

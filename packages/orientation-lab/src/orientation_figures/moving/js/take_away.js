@@ -1,17 +1,17 @@
 import { button, choice, element, group, write } from './shared.js';
 
-// The formulas of the module in other languages, written when the pages were made: one script for each language, which
-// is asked for when that language is chosen.
+// The formulas of the module in other languages, written when the pages were built: one script for each language, which
+// is loaded when the reader chooses it.
 const ENDINGS = { C: 'c', 'C++': 'cpp', Rust: 'rs', Julia: 'jl', Octave: 'm', JavaScript: 'js', GLSL: 'glsl' };
 export const LANGUAGES = Object.keys(ENDINGS);
-// Where the scripts of the figures lie; in a notebook there is no such place, and Python writes formulas itself.
+// The folder of the figures' scripts. A notebook has none, but there Python writes the formulas itself.
 const PLACE = globalThis.document?.currentScript?.src ?? '';
 const asked = new Map();
 
 const beside = (name) => new URL(name, PLACE).href;
 export const canTakeAway = () => Boolean(PLACE);
 
-// What a language has: texts by the words of formula, sequence or axis, matrix, scalar and unit.
+// Return the texts of a language, by formula, sequence or axis, matrix, scalar and unit.
 export function textsIn(language) {
   if (!asked.has(language)) {
     const script = element('script', { src: beside(`formulas-${language.toLowerCase().replace('++', 'pp')}.js`) });
@@ -28,16 +28,16 @@ export function textsIn(language) {
   return asked.get(language);
 }
 
-// The colours of drawings, where no drawing brings them.
+// The colours of drawings, for a page without drawings.
 export const colours = () => element('link', { rel: 'stylesheet', href: beside('drawing.css') });
 
-// The text of a formula; what it does not depend on is passed over.
+// Return the text of a formula, ignoring choices that do not matter to it.
 export function textOf(texts, name, wanted) {
   const { keys, ...given } = texts[name], parts = keys.map((key) => wanted[key]);
   return given.texts[parts.join(' ')];
 }
 
-// The text with its buttons: `show(text, name of a file)`.
+// A box for the text with its buttons: `show(text, file name)`.
 export function textBox(say) {
   let name = '';
   const text = element('output', { class: 'result code', 'aria-label': 'Formula', tabindex: '0' });

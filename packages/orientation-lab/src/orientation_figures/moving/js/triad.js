@@ -12,8 +12,8 @@ const number = (value, digits = 3) => fixed(value, digits).trim();
 const inDegrees = (angle) => `${number(degrees(angle), 1)}°`;
 
 export function render({ model, el }) {
-  let lit = null;       // the number that is touched: { kind, i, j }
-  let typed = [0, 0, 0];   // the axis as the reader wrote it, of any length
+  let lit = null;   // the number that the reader touches: { kind, i, j }
+  let typed = [0, 0, 0];   // the axis as the reader entered it, of any length
 
   const light = (kind) => (i, j) => {
     lit = i === undefined ? null : { kind, i, j };
@@ -93,7 +93,7 @@ export function render({ model, el }) {
   return follow(model, ['axis', 'angle', 'sequence'], redraw);
 }
 
-// What each number means: words, and what lights up in the drawing.
+// What each number means, in words, and what to highlight in the drawing.
 const MEANINGS = {
   matrix({ dcm }, i, j) {
     const value = dcm[i][j], between = Math.acos(Math.max(-1, Math.min(1, value)));
@@ -173,7 +173,7 @@ const MEANINGS = {
   },
 };
 
-// An angle drawn about the axis, between the unit vector of N that it moves most and where it goes.
+// Draw an angle about the axis, from the unit vector of N that moves most to where it goes.
 function angleAbout(sheet, axis, angle, label, { radius = 0.95, colour = 'accent', kind = '' } = {}) {
   const far = axis.map(Math.abs), k = far.indexOf(Math.min(...far));
   const arm = scale(radius + 0.1, unit(subtract(IDENTITY[k], scale(dot(IDENTITY[k], axis), axis))));

@@ -7,7 +7,7 @@ import { button, calm, change, choice, element, follow, glide, group, inSlices, 
 
 const UNKNOWN = 'not known', OFFERED_SEQUENCES = ['zyx', 'xyz', 'zxy', 'yxz', 'xzy', 'yzx', 'zxz', 'zyz', 'xyx', 'xzx', 'yxy', 'yzy'];
 const KINDS = [UNKNOWN, 'matrix', 'quaternion', 'Euler angles', 'rotation vector', 'axis and angle'];
-// Of one engine and its prose: what the answer is called.
+// The heading of the answer, by verdict.
 const HEADINGS = { same: 'Both give the same.', named: 'They differ, and this is how:', undecided: 'These numbers do not determine the cause.',
   unrelated: 'No explanation was found.' };
 
@@ -17,7 +17,7 @@ const AS_THE_MANUALS_SAY = { same: 'Both give what their manuals say.', named: '
 
 const PLACE = 'workbench', STATE = ['first', 'second', 'first_is', 'second_is', 'noise'], LONGEST = 5000;
 
-// What an address carries to here, as far as a reader could have entered it: it may come from anybody.
+// Take over what an address carries, only as far as a reader could have entered it: anybody may have written it.
 export function takenUp(content, programs = []) {
   const state = {}, ways = [UNKNOWN, 'rows', 'columns', 'body in world', 'world in body'];
   for (const side of ['first', 'second']) {
@@ -27,11 +27,11 @@ export function takenUp(content, programs = []) {
     if (known) state[`${side}_is`] = { program, kind, sequence, order, way, [TURNS]: turns };
   }
   if (content.noise >= 0 && content.noise <= 30) state.noise = content.noise;
-  // Numbers that were brought alone wait for the other program's.
+  // If only one side's numbers were given, leave the other side empty.
   return 'first' in state && !('second' in state) ? { ...state, second: '' } : state;
 }
 
-// A reader's answers hold for the numbers that were asked about, and not for the next ones.
+// A reader's answers are for the current numbers, not for the next ones.
 const UNANSWERED = { order: UNKNOWN, way: UNKNOWN, [TURNS]: UNKNOWN };
 const NOTHING_KNOWN = { program: UNKNOWN, kind: UNKNOWN, sequence: UNKNOWN, ...UNANSWERED };
 const knownOf = (side) => Object.fromEntries(Object.entries(side).filter(([name, value]) => value !== UNKNOWN && name !== 'program'
@@ -48,7 +48,7 @@ export function render({ model, el }) {
   const sides = ['first', 'second'].map((side, k) => {
     const field = element('textarea', { rows: 5, spellcheck: 'false', 'aria-label': `What the ${side} program gives`,
       input: () => change(model, { [side]: field.value, ...answered(UNANSWERED, UNANSWERED) }),
-      // A browser would open a dropped file in place of the page.
+      // By default a browser opens a dropped file in place of the page.
       async drop(event) {
         const [file] = event.dataTransfer.files;
         if (!file) return;
@@ -106,7 +106,7 @@ export function render({ model, el }) {
   element('div', { class: 'controls' }, element('div', { class: 'row-of-controls case' },
     element('label', { class: 'differ' }, 'They may differ by ', noise.element, ' degrees'), post)));
 
-  // The orientations at the last pose, reached by one turn from where the drawing stands.
+  // Rotate the drawing from its current to the new orientations of the last pose.
   function glideTo(dcms) {
     stop();
     const proper = dcms.every((dcm) => determinant(dcm) > 0) && shown.every((dcm) => determinant(dcm) > 0);
@@ -123,7 +123,7 @@ export function render({ model, el }) {
     });
   }
 
-  // Numbers that change meanwhile begin a new search, and nothing is said of the old ones.
+  // If the numbers change in the meantime, a new search begins, and the old result is dropped.
   async function judge() {
     const search = (searches += 1);
     for (const side of sides) side.show();
@@ -148,13 +148,13 @@ export function render({ model, el }) {
     const said = found ? answer(found, table, (declare) => change(model, answered(...declare))) : [element('p', { class: 'heading' }, 'Not readable yet'), element('p', {}, `${capital(fault)}.`)];
     verdict.replaceChildren(...said);
     mended();
-    // Where a question is open, no answer to it stands under the drawing.
+    // While a question is open, do not show one of its answers under the drawing.
     const told = found?.question ? [ONE_QUESTION, found.question] : found ? [headingOf(found), ...found.faults.map((one) => `${capital(one)}.`)] : [`${capital(fault)}.`];
     words.say(told.join(' '));
     if (found) glideTo(drawnDcms(found, table, found.poses - 1));
   }
 
-  // Also where both do as their manuals say there may be something to convert.
+  // Even if both do as their manuals say, there may be something to convert.
   function mended() {
     const line = (found && !found.chains[0]?.relation.inside && (found.verdict === 'named' || found.names?.length)) || (found?.verdict === 'same' && found.asTheirManualsSay)
       ? LANGUAGES[language.element.querySelector('select').value](found.chains[0]) : '';
@@ -166,7 +166,7 @@ export function render({ model, el }) {
     sheet.draw(() => picture(sheet, shown));
   }
 
-  // An address is taken up when the page opens with it, and when it is put into an open page.
+  // Take over an address when the page opens with it, or when it is pasted into an open page.
   function takeUp() {
     try {
       const carried = carriedBy(globalThis.location?.hash ?? '');
@@ -191,12 +191,12 @@ export function render({ model, el }) {
 const headingOf = ({ verdict, asTheirManualsSay }) => (asTheirManualsSay && AS_THE_MANUALS_SAY[verdict]) || HEADINGS[verdict];
 const capital = (text) => text[0].toUpperCase() + text.slice(1);
 
-// Where the book teaches it, and questions to try it by.
+// Where the book teaches it, and questions for practice.
 const linked = ([[section, title], ...questions]) => [element('a', { href: section }, title),
   ...questions.flatMap(([question, itsTitle], k) => [k ? ' and ' : `, and ${questions.length > 1 ? 'questions' : 'a question'}: `,
     element('a', { href: question }, itsTitle)]), '.'];
 
-// What the numbers of one side were taken for.
+// Say how the numbers of one side were read.
 function wasRead(found, k, table) {
   const { kinds, numbers } = found.sides[k], reading = found.chains[0]?.[k ? 'second' : 'first'], choices = reading?.choices ?? {};
   const how = reading ? table.kinds[reading.kind].map(({ group }) => told(group, choices[group])).filter(Boolean).join(', ') : '';
@@ -207,7 +207,7 @@ function wasRead(found, k, table) {
 const told = (group, value) => ({ order: () => [...value].join(' '), sequence: () => [...value].join('-'), places: () => (value === '123' ? '' : `printed ${[...value].join(', ')}`),
   signs: () => (value === '+++' ? '' : `signs ${[...value].join(' ')}`), 'place of the angle': () => `angle ${value}` }[group] ?? (() => value))();
 
-// The answer as the reader sees it; every fault leads to where the book teaches it.
+// Return the answer for the reader; every fault links to where the book teaches it.
 function answer(found, table, declare) {
   const best = found.chains[0], parts = [element('p', { class: 'heading' }, headingOf(found))];
   if (found.verdict === 'unrelated') {

@@ -1,4 +1,4 @@
-// Paints a scene with the processor of graphics, or with what stands in for it.
+// Paints a scene with WebGL, in hardware or in software.
 import { Camera, Geometry, Mesh, Program, Renderer, Transform } from 'ogl';
 import { DISTANCE, GROUND, HALF, LIGHT, RIM, TARGET } from './scene.js';
 import { add, scale } from '../../moving/js/mathematics.js';
@@ -38,7 +38,7 @@ const SHADE = `
   uniform vec3 colour;
   varying vec3 at;
   void main() { if (dot(at.xy, at.xy) > ${(RIM * RIM).toFixed(3)}) discard; gl_FragColor = vec4(colour, 1.0); }`;
-// What is drawn more than lit: thin lines would else be lost.
+// How flatly each colour is shaded, because lighting would make thin lines invisible.
 const PLAIN = { accent: 0.5, muted: 0.8, ink: 0.7, ground: 0.72, star: 0.75, paper: 0.9, lamp: 0.5 };
 const GLOSS = { graphite: 0.7, metal: 1, glass: 1.4, D: 0.55, B: 0.55, C: 0.55, A: 0.4 };
 
@@ -49,13 +49,13 @@ const parsed = (text) => {
 };
 
 export class Painter {
-  // Throws where the browser has nothing to paint with.
+  // Throws if the browser has no WebGL.
   constructor(canvas) {
     const wanted = { alpha: true, antialias: true, premultipliedAlpha: true };
     const gl = canvas.getContext('webgl2', wanted) ?? canvas.getContext('webgl', wanted);
     if (!gl) throw new Error('WebGL');
     this.canvas = canvas;
-    // Where the processor stands in, it has enough to do with one point for each of the page.
+    // Software rendering is slow, so use one pixel for each pixel of the page.
     const told = gl.getExtension('WEBGL_debug_renderer_info');
     const soft = /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(told?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER));
     this.finest = soft ? 1 : Math.min(2, globalThis.devicePixelRatio || 1);
@@ -92,10 +92,10 @@ export class Painter {
     return new Geometry(this.renderer.gl, { position: { size: 3, data: position }, normal: { size: 3, data: normal }, index: { data: index } });
   }
 
-  // A mesh that is not used in this picture yet, with the surface of the item.
+  // Return a mesh that is not used in this picture yet, with the surface of the item.
   mesh(item, kind) {
     const changing = CHANGING.has(item.shape);
-    // Those that change are told apart by how many points they have: then new ones fit into the place of the old.
+    // Changing shapes are distinguished by their number of points, so that new ones can reuse the old buffers.
     const name = changing ? `${kind} ${item.shape} ${item.of.length}` : `${kind} ${item.shape} ${item.of}`;
     if (!this.meshes.has(name)) this.meshes.set(name, { list: [], used: 0 });
     const pool = this.meshes.get(name);

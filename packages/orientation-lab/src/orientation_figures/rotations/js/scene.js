@@ -1,8 +1,8 @@
-// The world of the essay as data: for each state a list of shapes, each with its place and its colour, and a list of
-// labels. paint.js shows them on a screen and painter.py on paper, and neither knows what they mean.
+// The world of the essay as data: for each state, a list of shapes with their places and colours, and a list of labels.
+// paint.js shows them on screen and painter.py on paper, and neither knows what they mean.
 //
 // All places are along the unit vectors of the hand, frame A: a_x to the east, a_y to the north, a_z up. The gimbal is
-// z-x-y: the first motor turns about a_z, the second about b_x, the third about c_y, and the lens looks along d_y. So
+// z-x-y: the first motor rotates about a_z, the second about b_x, the third about c_y, and the lens looks along d_y. So
 // the three angles are longitude, height and roll.
 import { AXES, IDENTITY, SEQUENCES, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
   dcmFromQuaternion, dot, length, multiply, quaternionFromDcm, scale, simpleDcm, slerp, subtract,
@@ -13,19 +13,19 @@ import { STOPS } from './stops.js';
 const PI = Math.PI;
 export const deg = (angle) => angle * PI / 180;
 export const SEQUENCE = 'zxy';
-export const GROUND = -2.2, RIM = 1.42;   // where the ground lies, and how far it reaches
+export const GROUND = -2.2, RIM = 1.42;   // the height of the ground, and its radius
 export const LIGHT = unit([0.55, 0.1, 1]);
 export const DISTANCE = 8.5, TARGET = [0, 0, -0.42], HALF = 2.46;   // of the eye; what it looks at; half of what it sees there
 const REACH = 1.62;
 const mix = (a, b, part) => a + (b - a) * part;
 const clamp = (value) => Math.min(1, Math.max(0, value));
-// From 0 to 1 while t goes from one moment to another, gently at both ends.
+// Go from 0 to 1 as t goes from one moment to another, smoothly at both ends.
 const between = (t, from, to) => {
   const part = clamp((t - from) / (to - from));
   return part * part * (3 - 2 * part);
 };
 
-// Where the lens looks that many degrees east of north, that many up.
+// The direction so many degrees east of north, and so many up.
 export function direction(heading, height) {
   const [h, e] = [deg(heading), deg(height)];
   return [Math.sin(h) * Math.cos(e), Math.cos(h) * Math.cos(e), Math.sin(e)];
@@ -33,13 +33,13 @@ export function direction(heading, height) {
 
 export const STAR = direction(-22, 36);
 
-// Right, up and towards the eye, along A.
+// Return the directions right, up and towards the eye, along A.
 export function viewFrom(azimuth, elevation) {
   const [x, y, z] = multiply(simpleDcm('y', -elevation), simpleDcm('z', azimuth));
   return [y, z, x];
 }
 
-// Where a point is seen: right and up in halves of the smaller side of the picture, and how near it is.
+// Return where a point is seen: right and up in halves of the picture's smaller side, and how near it is.
 export function project(view, point, distance = DISTANCE) {
   const [x, y, z] = times(view, subtract(point, TARGET)), near = distance / (distance - z);
   return [near * x / HALF, near * y / HALF, z];
@@ -51,7 +51,7 @@ export function frames(angles) {
   return { A: IDENTITY, B, C, D };
 }
 
-// The angles of a matrix that lie nearest to those there were: of the two triples that there always are.
+// Return the angles of a matrix nearest to the previous ones, out of the two triples that always exist.
 export function anglesNear(dcm, before) {
   const [psi, theta, phi] = bodyFixedFromDcm(dcm, SEQUENCE);
   const near = [[psi, theta, phi], [psi + PI, PI - theta, phi + PI]].map((triple) => triple.map(
@@ -61,9 +61,9 @@ export function anglesNear(dcm, before) {
 }
 
 export const wrapped = (angle) => angle - 2 * PI * Math.round(angle / (2 * PI));
-// A vector turned about an axis: the rows of the matrix are the unit vectors turned.
+// Rotate a vector about an axis; the rows of the matrix are the rotated unit vectors.
 export const turned = (axis, angle, vector) => times(transpose(dcmFromAxisAngle(axis, angle)), vector);
-// A frame turned, as a thing in the room is.
+// Rotate a frame like an object in the room.
 export const turnedFrame = (axis, angle, dcm) => multiply(dcm, dcmFromAxisAngle(axis, angle));
 
 // ---- shapes ----------------------------------------------------------------------------------------------
@@ -73,7 +73,7 @@ class Scene {
     this.items = [];
     this.labels = [];
     this.alpha = 1;
-    this.casts = false;   // whether what is added throws a shadow on the ground
+    this.casts = false;   // whether the added shapes throw a shadow on the ground
   }
 
   add(shape, of, rows, origin, size, colour, alpha = 1) {
@@ -81,12 +81,12 @@ class Scene {
     if (seen > 0.01) this.items.push({ shape, of, rows, origin, size, colour, alpha: seen, casts: this.casts && seen > 0.6 });
   }
 
-  // A part of a ring in the plane of u and v.
+  // Add a part of a ring in the plane of u and v.
   arc(u, v, radius, thick, from, to, colour, origin = [0, 0, 0], alpha = 1) {
     this.add('arc', [radius, thick, from, to], [u, v, cross(u, v)], origin, [1, 1, 1], colour, alpha);
   }
 
-  // A cylinder, or a cone where `top`, its radius at the end as a share, is not 1.
+  // Add a cylinder, or a cone if `top`, the radius at its end relative to the start, is not 1.
   rod(from, to, radius, colour, { top = 1, alpha = 1 } = {}) {
     const along = subtract(to, from), far = length(along);
     if (far < 1e-6) return;
@@ -103,12 +103,12 @@ class Scene {
     this.add('box', [...size, bevel], rows, at, [1, 1, 1], colour, alpha);
   }
 
-  // A thread through points.
+  // Add a thread through points.
   tube(points, radius, colour, alpha = 1) {
     if (points.length > 1) this.add('tube', [radius, ...points.flat()], IDENTITY, [0, 0, 0], [1, 1, 1], colour, alpha);
   }
 
-  // A band between two lines of points, seen from both sides.
+  // Add a band between two lines of points, visible from both sides.
   ribbon(left, right, colour, alpha = 1) {
     this.add('ribbon', left.flatMap((point, k) => [...point, ...right[k]]), IDENTITY, [0, 0, 0], [1, 1, 1], colour, alpha);
   }
@@ -129,7 +129,7 @@ class Scene {
     if (label) this.label(add(to, scale(0.04 / far, along)), label, colour, from, alpha);
   }
 
-  // A label beyond a point as seen from another.
+  // Add a label beyond a point as seen from another.
   label(at, text, colour, from = [0, 0, 0], alpha = 1) {
     if (alpha * this.alpha > 0.3) this.labels.push({ at, text, colour, from });
   }
@@ -142,7 +142,7 @@ class Scene {
     }), thick, colour, alpha);
   }
 
-  // The way of a vector that is turned about an axis, with an arrow's head.
+  // Add the path of a vector that rotates about an axis, with an arrow's head.
   sweep(axis, angle, start, colour, { thick = 0.018, origin = [0, 0, 0], head = true, alpha = 1 } = {}) {
     if (Math.abs(angle) < 0.03) return;
     const count = Math.max(3, Math.ceil(Math.abs(angle) / 0.1));
@@ -183,7 +183,7 @@ class Scene {
     for (const z of [-1.52, -1.66, -1.8, -1.94]) this.arc(IDENTITY[0], IDENTITY[1], 0.153, 0.018, 0, 2 * PI, 'A', [0, 0, z], alpha);
     this.rod(at(up, -1.38), at(up, -1.14), 0.23, 'A', part);
     this.rod(at(up, -1.14), at(up, -1.1), 0.19, 'metal', part);
-    // The outer arm, which the first motor turns.
+    // The outer arm, which the first motor rotates.
     this.arc(B[0], B[2], 1.05, 0.07, PI, 2 * PI, 'B', [0, 0, 0], alpha);
     this.rod(at(B[2], -1.1), at(B[2], -1.0), 0.13, 'B', part);
     for (const side of [1, -1]) {
@@ -191,7 +191,7 @@ class Scene {
       this.rod(at(B[0], 1.17 * side), at(B[0], 1.2 * side), 0.1, 'metal', part);
       this.rod(at(B[0], 0.74 * side), at(B[0], 0.94 * side), 0.05, 'metal', part);
     }
-    // The inner arm, which the second motor turns.
+    // The inner arm, which the second motor rotates.
     this.arc(C[0], C[1], 0.77, 0.06, PI, 2 * PI, 'C', [0, 0, 0], alpha);
     for (const side of [1, -1]) this.ball(at(C[0], 0.77 * side), 0.085, 'C', alpha);
     this.rod(at(C[1], -0.9), at(C[1], -0.66), 0.14, 'C', part);
@@ -224,7 +224,7 @@ class Scene {
 const ZERO = [0, 0, 0];
 const poses = (...list) => list.map((pose) => pose.map(deg));
 
-// Through a list of poses, one after the other, as t goes from 0 to 1.
+// Pass through a list of poses, one after another, as t goes from 0 to 1.
 function through(list, t, marks = list.map((_, k) => k / (list.length - 1))) {
   let k = 0;
   while (k < list.length - 2 && t > marks[k + 1]) k += 1;
@@ -242,10 +242,10 @@ export const TOWARDS_STAR = [deg(22), deg(36), 0];
 export const CABLE = { wall: 2.05, start: 0.5 };
 export const axisOf = (start) => axisAngleFromDcm(frames(start).D);
 
-// Where the eye stands, where it is not where it always stands.
+// The position of the eye where it differs from the usual one.
 export const EYES = { 'not-home': [8, 24], 'two-mirrors': [52, 30], 'between-poses': [64, 50] };
 
-// Where the angles and the rest go by themselves at a moment of a stop; start: the pose in which the stop was entered.
+// The course of the angles and the rest at a moment of a stop; start: the pose in which the stop was entered.
 export const COURSE = {
   'which-way': (t) => ({ angles: through([AT_READER, AT_READER, poses([-38, -2, 0])[0]], t) }),
   'two-triads': (t) => ({ angles: GENERIC, away: between(t, 0.35, 0.95) }),
@@ -267,19 +267,19 @@ export const COURSE = {
   'your-turn': (t, start) => ({ angles: start }),
 };
 
-// The camera in stop 15: a rate that changes all the time, or, once the reader has thrown it, that of a free body; and
-// what a gyroscope that is off by 1.5 degrees a second about each axis makes of it, step by step.
+// The camera in stop 15: its rate changes all the time, or is that of a free body once the reader has thrown it. It
+// also has the orientation by a gyroscope that is off by 1.5 degrees a second about each axis, integrated step by step.
 const STEP = 0.05, OFF = scale(deg(1.5), [1, 1, 1]), INERTIA = [1.1, 0.8, 1.25];
 export const LASTS = 24;   // seconds
 export const rateAt = (time) => [0.5 * Math.sin(0.9 * time), 0.35 * Math.cos(0.6 * time), 0.4 * Math.sin(0.45 * time + 1)];
-// Euler's equations: how the rate of a free body changes, along its principal axes.
+// Euler's equations: the change of a free body's rate, along its principal axes.
 const freely = (rate) => INERTIA.map((own, i) => {
   const [j, k] = [(i + 1) % 3, (i + 2) % 3];
   return (INERTIA[j] - INERTIA[k]) * rate[j] * rate[k] / own;
 });
 
-// Frames as they are after each of the steps. `thrown`: where the camera was let go, and how fast it turned, along its
-// own arrows, as an instrument in it feels it.
+// The frames after each step. `thrown`: the orientation in which the camera was let go, and its rate along its own
+// axes, as an instrument in it measures it.
 class Run {
   constructor({ dcm, rate } = { dcm: IDENTITY }) {
     this.rate = rate;
@@ -287,7 +287,7 @@ class Run {
     this.told = [dcm];
   }
 
-  // The rate in the middle of the next step.
+  // Return the rate in the middle of the next step.
   next() {
     if (!this.rate) return rateAt((this.D.length - 0.5) * STEP);
     const middle = add(this.rate, scale(STEP / 2, freely(this.rate)));
@@ -318,18 +318,18 @@ export function motion(time, thrown) {
   return { D: at(run.D), told: at(run.told) };
 }
 
-// The two ways of stop 14 at a share of the way, as matrices.
+// Return the two ways of stop 14 at a share of the way, as matrices.
 export function ways(part) {
   const [from, to] = [FROM, TO].map((angles) => quaternionFromDcm(frames(angles).D));
   return { one: dcmFromQuaternion(slerp(from, dot(from, to) < 0 ? scale(-1, to) : to, part)),
     angles: frames(FROM.map((angle, k) => mix(angle, TO[k], part))).D };
 }
 
-// Both of them whole, in small steps: they are the same in every picture.
+// Both whole ways in small steps, cached because they are the same in every picture.
 let whole = null;
 export const wholeWays = () => { whole ??= Array.from({ length: 73 }, (_, k) => ways(k / 72)); return whole; };
 
-// How far a way turns in all, in radians: the sum of its small turns.
+// Return the total angle of a way, in radians: the sum of its small rotations.
 export const turnedAlong = (list) => list.slice(1).reduce((sum, dcm, k) => sum + apart(list[k], dcm), 0);
 export const apart = (first, second) => axisAngleFromDcm(multiply(second, transpose(first)))[1];
 
@@ -375,7 +375,7 @@ const SHOWS = {
     const margin = Math.abs(wrapped(s.angles[1])) - PI / 2, close = Math.abs(margin) < deg(12);
     for (const [axis, text, near] of [[A[2], '\\psi', 1.62], [C[1], '\\varphi', 1.5]]) {
       scene.dashes(scale(-1.25, axis), scale(near, axis), 0.017, close ? 'accent' : 'muted', 12);
-      // At lock the two names stand on either side of the one line.
+      // At lock the two names are on either side of the shared line.
       const at = scale(close ? 1.35 : near, axis), beside = scale(text === '\\psi' ? 1 : -1, s.right);
       scene.label(at, text, close ? 'accent' : 'ink', close ? add(at, beside) : ZERO);
     }
@@ -395,7 +395,7 @@ const SHOWS = {
     scene.dashes(scale(-2.0, axis), scale(2.0, axis), 0.022, 'accent', 13);
     scene.label(scale(2.0, axis), '\\hat{e}', 'accent');
     const home = frames(s.start).D;
-    for (const row of home) {   // the circle of each arrow's tip, and the part of it that is behind
+    for (const row of home) {   // the circle of each arrow's tip, and the completed part
       const foot = scale(dot(row, axis) * 1.3, axis), arm = subtract(scale(1.3, row), foot);
       if (length(arm) < 0.08) continue;
       const u = unit(arm);
@@ -439,10 +439,10 @@ const SHOWS = {
     const arm = scale(1.3, unit(cross(axis, [0, 0, 1])));
     scene.sweep(axis, s.whole % (2 * PI), arm, 'D', { thick: 0.024 });
     scene.circle(unit(arm), cross(axis, unit(arm)), 1.3, 0, 2 * PI, 'muted', 0.008);
-    // Along the axis the part that is a vector: as long as the sine of half the angle.
+    // Along the axis is the vector part, as long as the sine of half the angle.
     if (Math.abs(Math.sin(half)) > 0.05) scene.arrow(ZERO, scale(1.5 * Math.sin(half), axis), 'accent', { thick: 0.045 });
     scene.triad('D', D, { reach: 1.15, thick: 0.022, labels: false });
-    // The circle of the half angle, flat before the eye.
+    // The circle of the half angle, flat in front of the eye.
     const [right, up] = s.view, middle = add(TARGET, scale(1.52, right), scale(1.62, up)), r = 0.64;
     const at = (angle, far = r) => add(middle, scale(far * Math.sin(angle), right), scale(far * Math.cos(angle), up));
     scene.circle(right, up, r, 0, 2 * PI, 'muted', 0.014, middle);
@@ -461,7 +461,7 @@ const SHOWS = {
     const count = 64, left = [], right = [];
     for (let k = 0; k <= count; k += 1) {
       const part = k / count, far = mix(CABLE.start, CABLE.wall, part);
-      // In the figure's words the wall is at rest and the camera has turned: the loop is read from its end.
+      // In the belt figure the wall is at rest and the plate rotates, so the loop is read from its end.
       const rows = dcmFromQuaternion(quaternionAt(s.turn, s.passed, 1 - part));
       const place = (across) => times(transpose(rows), [across, -far, 0]);
       left.push(place(-0.11));
@@ -511,7 +511,7 @@ function starAnd(scene, at) {
   scene.star(scale(1.95, at));
 }
 
-// What an arrow of length 1 shows along the hand's arrows: its shadows, which are dot products.
+// Show the components of an arrow of length 1 along the hand's arrows: its projections, which are dot products.
 function shadows(scene, row, along) {
   const tip = scale(REACH, row);
   scene.arrow(ZERO, tip, 'D', { thick: 0.045 });
@@ -523,7 +523,7 @@ function shadows(scene, row, along) {
   }
 }
 
-// The camera at a moment: where the angles do not say all.
+// Return the orientation of the camera at a moment, since the angles do not determine everything.
 export function dcmOf(s) {
   const dcm = moved(s);
   if (!s.carry) return dcm;
@@ -546,17 +546,17 @@ function moved(s) {
 export function viewOf(s) {
   const fixed = viewFrom(deg(s.eye[0]), deg(s.eye[1]));
   if (s.ride < 0.001) return fixed;
-  // The eye goes with the camera from the pose that it had when the eye went over: the picture does not jump.
+  // The eye moves with the camera from the camera's pose at the change of view, so that the picture does not jump.
   const riding = multiply(fixed, transpose(frames(poses([0, 12, 0])[0]).D), frames(s.angles).D);
   const [from, to] = [fixed, riding].map(quaternionFromDcm);
   return dcmFromQuaternion(slerp(from, dot(from, to) < 0 ? scale(-1, to) : to, s.ride));
 }
 
-// What a state holds besides what a stop moves.
+// The other entries of a state, besides those that a stop changes.
 export const REST = { stop: 'which-way', t: 0, angles: AT_READER, eye: [52, 17], ride: 0, away: 0, lit: 0, part: 0, whole: 0, turn: 0,
   passed: 0, together: 0, apart: 0, time: 0, start: GENERIC, free: false, thrown: null, track: [] };
 
-// All that is seen in a state: { items, labels, view, frames }.
+// Return everything that is seen in a state: { items, labels, view, frames }.
 export function sceneOf(state) {
   const s = { ...REST, ...state }, stop = STOPS.find((candidate) => candidate.id === s.stop), scene = new Scene();
   const D = dcmOf(s), angles = stop.by === 'camera' && (s.carry || !s.free) ? anglesNear(D, s.angles) : s.angles;
@@ -577,7 +577,7 @@ export function sceneOf(state) {
 
 const WINDS = ['north', 'north-east', 'east', 'south-east', 'south', 'south-west', 'west', 'north-west'];
 
-// Which way a camera looks, in words.
+// Describe in words which way a camera looks.
 export function lookOf(dcm) {
   const [x, y, z] = dcm, height = Math.round(Math.asin(Math.max(-1, Math.min(1, y[2]))) * 180 / PI);
   if (Math.abs(height) >= 88) return `straight ${height > 0 ? 'up' : 'down'}`;
@@ -593,8 +593,8 @@ export function lookOf(dcm) {
 
 // ---- labels ------------------------------------------------------------------------------------------------
 
-// Places for the labels, in pixels from the middle, right and down: each beyond its point, and none on another.
-// `sizes` gives width and height of each.
+// Place the labels, in pixels right and down from the middle, each beyond its point and without overlaps. `sizes` gives
+// width and height of each.
 export function placed(labels, view, half, sizes, [wide, high]) {
   const boxes = labels.map((label, k) => {
     const [x, y] = project(view, label.at).map((v) => v * half), [u, v] = project(view, label.from).map((w) => w * half);

@@ -12,7 +12,7 @@ class Surface {
     return this.position.length / 3 - 1;
   }
 
-  // Two triangles for each field of a net of points.
+  // Add two triangles for each cell of a net of points.
   net(rows, columns, at) {
     const first = this.position.length / 3;
     for (let i = 0; i <= rows; i += 1) for (let j = 0; j <= columns; j += 1) this.point(...at(i / rows, j / columns));
@@ -34,7 +34,7 @@ class Surface {
 
 const SHAPES = {
   arc(surface, [radius, thick, from, to]) {
-    // A small or a thin one needs few faces to look round.
+    // A small or thin arc needs few faces to look round.
     surface.net(Math.ceil((to - from) / (radius > 0.5 ? 0.09 : 0.26)), thick > 0.04 ? 14 : 6, (i, j) => {
       const a = from + (to - from) * i, b = -TURN * j, out = [Math.cos(a), Math.sin(a), 0];
       const normal = add(scale(Math.cos(b), out), [0, 0, Math.sin(b)]);
@@ -57,7 +57,7 @@ const SHAPES = {
       return [normal, normal];
     });
   },
-  // A box with its edges and corners cut off.
+  // A box with bevelled edges and corners.
   box(surface, [x, y, z, bevel]) {
     const half = [x / 2, y / 2, z / 2];
     const corner = (signs, k) => signs.map((sign, i) => sign * (half[i] - (i === k ? 0 : bevel)));
@@ -103,7 +103,7 @@ const SHAPES = {
   },
 };
 
-// Those whose points change with every picture.
+// The shapes whose points change with every picture.
 export const CHANGING = new Set(['tube', 'ribbon']);
 
 export function surfaceOf(shape, of) {

@@ -1,4 +1,4 @@
-// Writes down what is seen at the moment of each stop that stands for it on paper: `python -m tools.rotations`.
+// Write the scene of each stop at the moment that represents it on paper, for `python -m tools.rotations`.
 import { COURSE, CROOKED, EYES, GENERIC, HALF, REST, TARGET, DISTANCE, GROUND, LIGHT, RIM, placed, project, sceneOf } from './scene.js';
 import { AXES } from '../../moving/js/mathematics.js';
 import { LABELS } from '../../moving/js/glyphs.js';
@@ -12,7 +12,7 @@ const sizeOf = ({ text }) => {
   return [(right - left) * 0.02 + 4, (bottom - top) * 0.02 + 4];
 };
 
-// The state of a stop at a moment of it, when it was entered in a pose.
+// Return the state of a stop at a moment, if it was entered in the pose `start`.
 export function stateAt(stop, t, start = stop.id === 'one-turn' ? CROOKED : GENERIC) {
   return { ...REST, eye: EYES[stop.id] ?? REST.eye, stop: stop.id, t, start, ...COURSE[stop.id](t, start) };
 }
@@ -24,7 +24,7 @@ const stills = STOPS.map((stop) => {
     items: items.map(({ shape, of, rows, origin, size, colour, alpha, casts }) => [shape, round(of), round(rows), round(origin), round(size), colour, round(alpha), casts ? 1 : 0]),
     labels: labels.map(({ at, text, colour }, k) => [text, LABELS[text] && colour !== 'muted' ? 1 : 0, colour, places[k].map((value) => Math.round(10 * value) / 10), round(at)]) };
 });
-// Two moments of each, with what the camera's arrows are then: the tests hold them against the Python of the book.
+// Two moments of each, with the camera's frames then: tests compare them with the book's Python.
 const tried = STOPS.flatMap((stop) => [0.37, 0.83].map((t) => {
   const state = stateAt(stop, t), { frames } = sceneOf(state);
   return { id: stop.id, t, state: { ...state, shown: undefined }, frames };

@@ -1,6 +1,6 @@
-// The stops of the essay: how much of the machine is seen in each, from 0 to 1, what the reader can set there besides
-// the gimbal itself, and the moment that stands for it on paper. `by`: 'camera' where the camera's motion is given and
-// the angles follow. `before` and `after` say what is seen there, to those who do not see it.
+// The stops of the essay: how visible each part of the machine is, from 0 to 1, what the reader can set besides the
+// gimbal itself, and the moment that represents the stop on paper. `by` is 'camera' if the camera's motion is given and
+// the angles follow. `before` and `after` describe the scene to readers who cannot see it.
 const MOTORS = ['psi', 'theta', 'phi'];
 
 export const STOPS = [

@@ -1,5 +1,5 @@
-// The figure of the essay in the page: it stays while the text goes past, the text moves it, and the reader may take it
-// in hand at any moment. What is seen follows what is wanted, a little later and gently.
+// The figure of the essay in the page: it stays while the text scrolls past and moves it, and the reader may take hold
+// of it at any moment. What is shown follows the goal smoothly, a little later.
 import { carriedBy, fragmentOf } from '../../moving/js/address.js';
 import { add, dot, length, quaternionFromDcm, scale, times, transpose, unit } from '../../moving/js/mathematics.js';
 import { calm, element, put, words, write } from '../../moving/js/shared.js';
@@ -13,7 +13,7 @@ import { STOPS } from './stops.js';
 const PLACE = 'rotations';
 const DEGREES = 180 / Math.PI, PI = Math.PI;
 const say = (angle) => `${Math.round(angle * DEGREES)} degrees`;
-// What the reader can set: its name, from, to, one step, how many of its units are one of the state's, and the unit.
+// What the reader can set: its name, minimum, maximum, step, units per unit of the state, and the sign of the unit.
 const DIALS = {
   psi: ['first motor', -180, 180, 1, DEGREES, '°', 0], theta: ['second motor', -180, 180, 1, DEGREES, '°', 1], phi: ['third motor', -180, 180, 1, DEGREES, '°', 2],
   away: ['carry the camera across', 0, 100, 1, 100, '%'], part: ['share of the way', 0, 100, 1, 100, '%'],
@@ -23,7 +23,7 @@ const DIALS = {
 };
 const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time'];
 const FADES = ['machine', 'camera', 'A', 'D', 'ground'];
-const SWING = [0.5, 0.4, 1.1];   // along A, radians a second
+const SWING = [0.5, 0.4, 1.1];   // along A, in radians a second
 const stopOf = (id) => STOPS.find((candidate) => candidate.id === id);
 const fadesOf = (stop) => ({ ground: 1, ...stop });
 
@@ -35,8 +35,8 @@ class World {
     this.goal = { t: 0, angles: [...AT_READER], eye: [...REST.eye] };
     for (const name of SCALARS) this.goal[name] = 0;
     this.shown = Object.fromEntries(FADES.map((name) => [name, fadesOf(STOPS[0])[name]]));
-    this.set = new Set();      // what the reader has set in this stop
-    this.carry = null;         // the way of the camera from where it was to where this stop has it
+    this.set = new Set();   // what the reader has set in this stop
+    this.carry = null;   // the camera's way from its previous pose to that of this stop
     this.began = new Set();
     this.build();
     this.painter = new Painter(this.canvas);
@@ -48,7 +48,7 @@ class World {
     this.takeUp();
   }
 
-  // ---- what it is made of --------------------------------------------------------------------------------
+  // ---- building it -----------------------------------------------------------------------------------------
 
   build() {
     this.canvas = element('canvas', { tabindex: '0', role: 'application', 'aria-roledescription': 'camera gimbal',
@@ -79,7 +79,7 @@ class World {
 
   resize() {
     const { clientWidth, clientHeight } = this.stage, { wide, high } = this.painter;
-    // An observer calls also when it begins to observe, and would have the first picture drawn twice.
+    // An observer also calls when it begins to observe, which would draw the first picture twice.
     if (!clientWidth || !clientHeight || (clientWidth === wide && clientHeight === high)) return;
     this.half = Math.min(clientWidth, clientHeight) / 2;
     this.painter.resize(clientWidth, clientHeight);
@@ -92,7 +92,7 @@ class World {
     canvas.addEventListener('pointerdown', (event) => this.hold(event));
     canvas.addEventListener('pointermove', (event) => this.move(event));
     for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, (event) => this.release(event));
-    // A finger on the machine takes it; beside it, the page scrolls.
+    // A finger on the machine takes hold of it; beside it, the page scrolls.
     canvas.addEventListener('touchstart', (event) => { if (this.partAt(this.at(event.touches[0]))) event.preventDefault(); }, { passive: false });
     canvas.addEventListener('keydown', (event) => this.press(event));
     canvas.addEventListener('dblclick', () => this.giveBack());
@@ -106,17 +106,17 @@ class World {
 
   // ---- the text moves it -----------------------------------------------------------------------------------
 
-  // Where a stop stands in the window when its scene begins, which is where a link to it leads; and over how many pixels
-  // of scrolling the scene goes on.
+  // Where a stop is in the window when its scene begins, which is where a link to it leads, and for how many pixels of
+  // scrolling the scene continues.
   course({ place }) {
     const { top, height } = place.getBoundingClientRect();
-    const begins = Math.min(parseFloat(getComputedStyle(place).scrollMarginTop), top + scrollY);   // the first stands higher
+    const begins = Math.min(parseFloat(getComputedStyle(place).scrollMarginTop), top + scrollY);   // the first is higher up
     const line = (begins + innerHeight) / 2;
     return { top, line, begins, lasts: Math.max(1, 0.85 * (height + begins - line)) };
   }
 
-  // Which stop is being read, and how much of it: one begins to read it when it has come up to the middle of what the
-  // window shows of the text.
+  // Find which stop is being read, and how much of it. Reading begins when a stop has come up to the middle of the
+  // visible part of the text.
   follow() {
     if (!this.sections.length) return;
     let now = this.sections[0], part = 0;
@@ -142,10 +142,10 @@ class World {
     this.set.clear();
     this.heldAt = null;
     for (const name of SCALARS) if (!['ride'].includes(name)) this.state[name] = 0;
-    // From the pose that the reader left the one turn leads home; a pose that is nearly home would show nothing.
+    // The one rotation leads home from the pose that the reader left; from a pose nearly at home it would show nothing.
     const angles = anglesNear(before, this.state.angles);
     this.state.angles = angles;
-    // At the last stop it stands as it was left.
+    // The last stop keeps the pose as it was left.
     this.state.start = id === 'your-turn' || (free && axisOf(angles)[1] > 0.6) ? angles : CROOKED;
     if (!first && stop.by === 'camera') this.carry = { from: quaternionFromDcm(before), since: null };
     this.goal.eye = [...EYES[id] ?? REST.eye];
@@ -154,7 +154,7 @@ class World {
     this.passed = false;
   }
 
-  // What the text wants now.
+  // Set the goals that the text gives now.
   wanted() {
     const { state, goal } = this, course = COURSE[state.stop](state.t, state.start);
     if (course.angles && !state.free) goal.angles = course.angles;
@@ -198,7 +198,7 @@ class World {
     };
     state.t = towards(state.t, goal.t, 0.3, 1e-3);
     this.wanted();
-    // To an angle that the text wants by the short way, to one of the reader's as it was moved.
+    // Go to an angle given by the text by the short way, and to one of the reader's as it was moved.
     state.angles = state.angles.map((angle, k) => {
       const to = state.free ? goal.angles[k] : angle + wrapped(goal.angles[k] - angle);
       return towards(angle, to, state.free ? 0.035 : 0.22, 5e-4);
@@ -237,10 +237,10 @@ class World {
     this.figure.dataset.state = this.state.stop;
   }
 
-  // Where graphics are drawn by the processor, fewer points are better than few pictures.
+  // If the processor draws the graphics, fewer pixels are better than fewer pictures.
   pace(now, still) {
     if (still || !this.before) { this.slow = 0; return; }
-    // One that takes long counts for up to three.
+    // A slow picture counts for up to three.
     const took = now - this.before;
     this.slow = took > 55 ? (this.slow ?? 0) + Math.min(3, took / 55) : 0;
     if (this.slow > 6 && this.painter.renderer.dpr > 0.6) {
@@ -287,7 +287,7 @@ class World {
     });
   }
 
-  // The quaternion that goes on from the last one: of q and -q the nearer.
+  // Return the quaternion that continues the last one: the nearer of q and -q.
   quaternion(dcm) {
     let q = quaternionFromDcm(dcm);
     if (this.state.stop === 'four-numbers' && !this.state.free) {
@@ -348,13 +348,13 @@ class World {
     return `Your path: ${say(taken + left)}. The single rotation: ${say(needed[0])}. In angles: ${say(needed[1])}.`;
   }
 
-  // Heard when it has rested.
+  // Announce a text when it has stayed the same for a while.
   tell(text) {
     clearTimeout(this.wait);
     this.wait = setTimeout(() => { this.heard.textContent = text; }, 500);
   }
 
-  // ---- the reader takes it in hand ---------------------------------------------------------------------------
+  // ---- the reader takes hold of it ---------------------------------------------------------------------------
 
   at(event) {
     const box = this.canvas.getBoundingClientRect();
@@ -363,7 +363,7 @@ class World {
 
   onScreen(point) { return project(this.picture.view, point).slice(0, 2).map((entry) => entry * this.half); }
 
-  // What lies under the pointer: an arm, with the point of it, or the camera.
+  // Return what is under the pointer: an arm with its point, or the camera.
   partAt(at) {
     if (!this.picture) return null;
     const { B, C } = this.picture.frames, stop = stopOf(this.state.stop), found = [];
@@ -430,7 +430,7 @@ class World {
     this.wake();
   }
 
-  // As a ball under the hand: the front goes where the pointer goes.
+  // Rotate like a ball under the hand: the front follows the pointer.
   turnBy([right, up], when) {
     const { goal, state } = this, turn = Math.hypot(right, up) / (0.75 * this.half);
     if (!turn) return;
@@ -441,7 +441,7 @@ class World {
     if (state.stop === 'between-poses') state.track = [...state.track, dcm].slice(-400);
   }
 
-  // An arm goes as far along its circle as the pointer does.
+  // Move an arm as far along its circle as the pointer moves.
   along(k, axis, moved) {
     const point = this.held.point, small = 0.02, ahead = turnedPoint(axis, small, point);
     const [from, to] = [this.onScreen(point), this.onScreen(ahead)];
@@ -458,14 +458,14 @@ class World {
     this.canvas.removeAttribute('data-held');
     if (!part) return;
     if (part === 'D' && this.state.stop === 'it-moves') {
-      // As fast as it was turned in the last tenth of a second.
+      // Throw it at the speed of the last tenth of a second.
       const lately = (this.swing ?? []).filter(({ at }) => event.timeStamp - at < 100);
       if (lately.length) this.throwIt(scale(10, add(...lately.map(({ by }) => by))));
     }
     this.letGo();
   }
 
-  // Thrown: it turns on by itself, at that rate, along A.
+  // After a throw the camera keeps rotating at that rate, along A.
   throwIt(rate) {
     const { state } = this, dcm = frames(state.angles).D, fast = length(rate);
     if (fast < 0.2) return;
@@ -475,7 +475,7 @@ class World {
     this.run('time', LASTS, 1000 * LASTS);
   }
 
-  // What follows when it is let go, by hand or by key.
+  // Continue when the reader lets go, by hand or by key.
   letGo() {
     const { state, goal } = this;
     this.wake();
@@ -489,7 +489,7 @@ class World {
     requestAnimationFrame(() => { if (this.picture) this.tell(this.words()); });
   }
 
-  // Goes on by itself.
+  // Run a value to its end by itself.
   run(name, to, lasts) {
     this.set.add(name);
     const begin = performance.now(), running = this.running = {};
@@ -596,11 +596,11 @@ class World {
       this.tell('The address is copied. Anyone who opens it sees the gimbal as it is now.');
       write(this.seen, 'The address is copied. Anyone who opens it sees the gimbal as it is now.');
     } catch {
-      history.replaceState(null, '', address);   // then it is in the bar of addresses
+      history.replaceState(null, '', address);   // then the address is in the address bar
     }
   }
 
-  // What an address carries may come from anybody: it is taken up as far as a reader could have entered it.
+  // Anybody may have written an address, so take over only what a reader could have entered.
   takeUp() {
     let carried = null;
     try {
@@ -660,7 +660,7 @@ class World {
     addEventListener(name, (event) => {
       if (!this.canvas.isConnected || !sensors.orientation(event) || this.held) return;
       this.seize();
-      // As the standard has it, and this gimbal too: z-x-y from the ground to the phone, whose top edge is the lens.
+      // As in the standard, and in this gimbal: z-x-y from the ground to the phone, whose top edge is the lens.
       this.goal.angles = anglesNear(frames(sensors.angles).D, this.goal.angles);
       const q = this.quaternion(frames(sensors.angles).D), margin = Math.abs(Math.abs(sensors.angles[1]) - PI / 2);
       first ??= q;
@@ -690,11 +690,11 @@ for (const figure of document.querySelectorAll('.world:not([data-ready], [data-s
   try {
     figure.world = new World(figure, sections);
     figure.dataset.ready = '';
-    // What has been taken hold of while this script was on its way is held from the first picture on.
+    // If the reader took hold of it while this script was loading, it is held from the first picture on.
     requestAnimationFrame(() => figure.pressed && figure.world.hold(figure.pressed));
   } catch (error) {
     if (error.message !== 'WebGL') throw error;
-    // Without WebGL the stills take turns in the place of the figure.
+    // Without WebGL the stills are shown in turn in place of the figure.
     figure.dataset.stills = '';
     const still = figure.querySelector('.still');
     const show = () => {
