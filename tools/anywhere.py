@@ -42,8 +42,8 @@ from notebook_pages.warm_kernels import WarmAsyncKernelManager
 
 from .released import digests_of
 
-#: Kernels of OpenBLAS, oldest first, each with those of NumPy's own instructions that a processor
-#: of that age lacks.
+#: Kernels of OpenBLAS, oldest first. Each has the instructions that NumPy would use here but a
+#: processor of that age lacks.
 KERNELS = {
     "Prescott": ("X86_V3", "X86_V4", "AVX512_ICL", "AVX512_SPR"),
     "Nehalem": ("X86_V3", "X86_V4", "AVX512_ICL", "AVX512_SPR"),
@@ -80,7 +80,8 @@ def numbers_here(only):
 
 def kernel_in_use():
     """Return the kernel that NumPy's OpenBLAS reports, or nothing if NumPy uses another library."""
-    import numpy  # loads it
+    # Importing NumPy loads the library.
+    import numpy
 
     for file in Path(numpy.__file__).parent.with_name("numpy.libs").glob("*openblas*"):
         name = ctypes.CDLL(str(file)).scipy_openblas_get_corename64_
@@ -240,7 +241,8 @@ def numbers_in_a_browser(only):
         shutil.copy(Path(__file__).with_name("released.py"), folder)
         (folder / "sources").mkdir()
         for path in sources(only):
-            text = json.dumps(nbformat.read(path, as_version=4))  # with each cell as one text
+            # Serialising the notebook joins the source of each cell to one text.
+            text = json.dumps(nbformat.read(path, as_version=4))
             (folder / "sources" / path.name).write_text(text, "utf8")
         (folder / "codes.json").write_text(
             json.dumps({"cells": codes, "packages": list(PACKAGES)}), "utf8"

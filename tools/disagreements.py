@@ -1,8 +1,8 @@
 """Score a tool on public disagreements: ``python -m tools.disagreements [COMMAND]``.
 
-Their raw numbers are in ``appendix/disagreements.json``. The command is called with the numbers of
+The raw numbers are in ``appendix/disagreements.json``. The command is called with the numbers of
 both sides as its last two arguments and prints JSON with a ``verdict`` (``same``, ``named``,
-``undecided`` or ``unrelated``) and ``faults``, a list of words.
+``undecided`` or ``unrelated``) and ``faults``, a list of phrases.
 """
 
 import json

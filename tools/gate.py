@@ -1,4 +1,4 @@
-"""Compute the data of the figure of the gate, with the filter that chapter 19 prints.
+"""Compute the data of the gate's figure, with the filter from chapter 19.
 
 ``python -m tools.gate`` writes them to ``gate.json`` beside the figure, which takes a minute or
 two.
@@ -15,7 +15,8 @@ ROOT = Path(__file__).parents[1]
 TABLE = (
     ROOT / "packages" / "orientation-lab" / "src" / "orientation_figures" / "moving" / "gate.json"
 )
-STEELS = (0, 2, 4, 6, 8, 10, 12)  # microtesla
+# In microtesla.
+STEELS = (0, 2, 4, 6, 8, 10, 12)
 # Shares of measurements that the gate of a correctly tuned filter rejects; 0 is no gate.
 REJECTED = (0, 0.001, 0.01, 0.1, 0.5, 0.9)
 CURVES = 5

@@ -1,7 +1,7 @@
 """Add a chapter or a question with every part that it needs.
 
-The parts that the author must write are marked TO BE WRITTEN, and `tools.chapters` lists
-those that remain. Run it with ``python -m tools.new``.
+The parts that the author must write are marked TO BE WRITTEN, and `tools.chapters` lists those that
+remain. Run it with ``python -m tools.new``.
 """
 
 import argparse
@@ -20,7 +20,7 @@ NAME = r"[a-z][a-z0-9]*(-[a-z0-9]+)*"
 
 
 class Example(NamedTuple):
-    """An answer of one kind: its variable, its statements, what it is, and facts on it."""
+    """An answer of one kind: its variable, its statements, its description, and facts about it."""
 
     variable: str
     code: str
@@ -231,7 +231,7 @@ ASKED_ALOUD = (
 
 
 def add_spoken(name, after):
-    """Leave a place for three questions to ask aloud, after those of another notebook."""
+    """Insert placeholders for three questions to ask aloud, after those of another notebook."""
     new = f"\n## {name}\n" + "".join(ASKED_ALOUD.format(number=number) for number in (1, 2, 3))
     own = rf"\n## {after}\n(?:.*\n)*?(?=\n## |\Z)"
     text = re.sub(own, lambda section: section[0] + new, SPOKEN.read_text("utf8"))
@@ -239,7 +239,7 @@ def add_spoken(name, after):
 
 
 def new_chapter(name, title, after):
-    """Make a chapter and its exercises, and enter both in all lists of the book."""
+    """Make a chapter and its exercises, and add both to all lists of the book."""
     if not re.fullmatch(NAME, name) or not title.strip():
         sys.exit(
             "A chapter needs a TITLE, and a NAME made of lower-case letters and hyphens; you gave "

@@ -13,7 +13,7 @@ from coursework.authoring.source import read_source
 
 
 def digests_of(path):
-    """Return digests of what is sealed in a notebook with solutions, before the slow hash.
+    """Return digests of the sealed content of a notebook with solutions, before the slow hash.
 
     There is a digest of each question in each variant.
     """
@@ -30,7 +30,7 @@ def digests_of(path):
 
 
 def contents(question):
-    """Return all that the seal of a question depends on."""
+    """Return everything that the seal of a question depends on."""
     known = {
         text: [answer.as_json() for answer in entry.answers]
         for text, entry in question.entries.items()

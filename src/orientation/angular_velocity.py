@@ -32,7 +32,7 @@ def angular_velocity_matrix(angles: Numbers, sequence: AxisSequence) -> Array: .
 @overload
 def angular_velocity_matrix(angles: Values, sequence: AxisSequence) -> Matrix: ...
 def angular_velocity_matrix(angles: Values, sequence: AxisSequence) -> Array | Matrix:
-    r"""Matrix that turns the rates of body fixed Euler angles into the angular velocity.
+    r"""Matrix that converts the rates of body fixed Euler angles to the angular velocity.
 
     $$
     \boldsymbol{\omega}_D = \mathbf{M}\begin{bmatrix} \dot\psi & \dot\theta & \dot\varphi
@@ -101,8 +101,8 @@ def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Matrix: ...
 def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Array | Matrix:
     r"""Angular velocity of a direction cosine matrix that changes.
 
-    This is how the angular velocity is defined: $\dot{\mathbf{C}}\mathbf{C}^T$ is skew, because
-    $\mathbf{C}\mathbf{C}^T = \mathbf{I}$, and
+    This is how the angular velocity is defined: $\dot{\mathbf{C}}\mathbf{C}^T$ is skew-symmetric,
+    because $\mathbf{C}\mathbf{C}^T = \mathbf{I}$, and
 
     $$
     [\boldsymbol{\omega}]_\times =
@@ -114,8 +114,8 @@ def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Array | Matrix:
     dcm : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
         ${}^A\mathbf{C}^N$.
     rate : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        Its time derivative, per second. If both are measured, the product is not quite skew, and
-        its skew part is taken.
+        Its time derivative, per second. If both are measured, the product is not quite
+        skew-symmetric, and its skew-symmetric part is used.
 
     Returns
     -------

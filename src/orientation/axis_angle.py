@@ -56,7 +56,7 @@ def dcm_from_axis_angle(axis: Values, angle: Values) -> Matrix: ...
 def dcm_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
     r"""Direction cosine matrix of a rotation about one axis.
 
-    $A$ is turned with respect to $N$ through $\theta$ about the unit vector $\hat{e}$, whose
+    $A$ is rotated with respect to $N$ through $\theta$ about the unit vector $\hat{e}$, whose
     components are the same in both frames:
 
     $$
@@ -108,9 +108,10 @@ def axis_angle_formula(
 def turn_components(
     cosine: Component, first: Component, second: Component, x: Component, y: Component, z: Component
 ) -> Sequence[Component]:
-    r"""Components, row by row, of $c\,\mathbf{I} + s_2\,\mathbf{v}\mathbf{v}^T
-    - s_1\,[\mathbf{v}]_\times$: a turn about the vector, whose length has been divided out of
-    both shares.
+    r"""Return the components of a rotation about a vector, given its cosine and two factors.
+
+    They are those of $c\,\mathbf{I} + s_2\,\mathbf{v}\mathbf{v}^T - s_1\,[\mathbf{v}]_\times$, row
+    by row, where the length of the vector has been divided out of both factors.
     """
     sx, sy, sz, rx, ry = first * x, first * y, first * z, second * x, second * y
     xy, xz, yz = rx * y, rx * z, ry * z

@@ -87,7 +87,7 @@ def _is_one(entries: Sequence[Column]) -> TypeGuard[Sequence[Entry]]:
 def _match(
     first: Sequence[complex], second: Sequence[complex], tolerance: float = TOLERANCE
 ) -> bool:
-    """Whether numbers are equal; quaternions may differ by sign."""
+    """Check whether numbers are equal; quaternions may differ by sign."""
     if len(first) == 4:
         sign = 1 if sum((a * b.conjugate()).real for a, b in zip(first, second)) >= 0 else -1
         second = [sign * entry for entry in second]
@@ -97,7 +97,7 @@ def _match(
 def _columns_match(
     first: Sequence[complex | Array], second: Sequence[complex | Array], tolerance: float
 ) -> bool:
-    """Whether the columns of two batches are equal; quaternions may differ by sign."""
+    """Check whether the columns of two batches are equal; quaternions may differ by sign."""
     import numpy
 
     firsts, seconds = (list(map(numpy.asarray, entries)) for entries in (first, second))
@@ -110,7 +110,7 @@ def _columns_match(
 
 
 def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE) -> bool:
-    """Tell whether two direction cosine matrices, or two quaternions, are the same orientation.
+    """Check whether two direction cosine matrices, or two quaternions, are the same orientation.
 
     Symbols are compared by name, so that ``theta`` with and without assumptions, or as a function
     of time, are one angle. The two quaternions $q$ and $-q$ are the same orientation.
@@ -182,7 +182,7 @@ def diagnose(
     sequence: str | None = None,
     tolerance: float = TOLERANCE,
 ) -> Diagnosis:
-    """Say whether an orientation is the expected one and, if it is not, which mix-up explains it.
+    """Check whether an orientation is the expected one, and find the mix-up if it is not.
 
     A mix-up is named only if it reproduces the given answer at every random value of the symbols.
     If several do, they are mathematically the same for this answer, and all of them are named.
@@ -192,8 +192,8 @@ def diagnose(
     given, expected : direction cosine matrices or quaternions
         Of shape ``(3, 3)`` or ``(4,)``; symbols or numbers.
     angles, sequence : optional
-        The Euler angles and the body fixed sequence that ``expected`` is made of. For a symbolic
-        matrix of up to three angles they are recognised without being given.
+        The Euler angles and the body fixed sequence of ``expected``. For a symbolic matrix of up to
+        three angles they are recognised without being given.
     tolerance : float
         Largest difference between two entries that counts as rounding. Numbers from a file need
         more than the rounding of a computation: half a unit of their last printed digit, and what

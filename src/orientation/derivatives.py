@@ -113,7 +113,7 @@ class Dual:
 
 
 def parts(entry: Dual | Array | float) -> tuple[Array | float, Array | float]:
-    """The value and the slopes of a component, which may be constant."""
+    """Return the value and the slopes of a component, which may be constant."""
     return (entry.value, entry.slopes) if isinstance(entry, Dual) else (entry, 0.0)
 
 

@@ -42,7 +42,7 @@ def simple_dcm(axis: Axis, angle: Values) -> Matrix: ...
 def simple_dcm(axis: Axis, angle: Values) -> Array | Matrix:
     r"""Direction cosine matrix of a simple orientation.
 
-    $A$ is turned with respect to $N$ through ``angle`` about a unit vector that both share. About
+    $A$ is rotated with respect to $N$ through ``angle`` about a unit vector that both share. About
     $z$,
 
     $$

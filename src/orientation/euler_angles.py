@@ -68,7 +68,7 @@ def dcm_from_body_fixed(angles: Numbers, sequence: AxisSequence) -> Array: ...
 @overload
 def dcm_from_body_fixed(angles: Values, sequence: AxisSequence) -> Matrix: ...
 def dcm_from_body_fixed(angles: Values, sequence: AxisSequence) -> Array | Matrix:
-    r"""Direction cosine matrix of three rotations, each about an axis of the turned frame.
+    r"""Direction cosine matrix of three rotations, each about an axis of the rotated frame.
 
     For the sequence z-x-y, with angles $\psi, \theta, \varphi$,
 

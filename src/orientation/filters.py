@@ -44,7 +44,7 @@ class Innovation(NamedTuple):
 
 
 class FilterState(NamedTuple):
-    r"""What a filter knows at one moment, or a smoother at all of them.
+    r"""The estimate of a filter at one moment, or of a smoother at all of them.
 
     Attributes
     ----------

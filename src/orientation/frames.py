@@ -139,7 +139,7 @@ class Frames:
         return tuple(self._leaving)
 
     def orient_axis(self, frame: str, reference: str, axis: Axis | Values, angle: Values) -> Frames:
-        r"""Return frames with ``frame`` turned in ``reference`` about one axis through ``angle``.
+        r"""Return frames with ``frame`` rotated in ``reference`` about one axis through ``angle``.
 
         Parameters
         ----------
@@ -158,7 +158,8 @@ class Frames:
         symbolic = is_symbolic((axis, angle))
         (own_angle,) = _own(angle, (), "angle", symbolic)
         if isinstance(axis, str):
-            _AxisTurn(axis, own_angle).dcm()  # refuses what is not valid, before it is stored
+            # Refuse invalid input before storing it.
+            _AxisTurn(axis, own_angle).dcm()
             return self._with(frame, reference, _AxisTurn(axis, own_angle))
         own_axis = _own(axis, (3,), "axis", symbolic)
         words = rf"\text{{axis }}({', '.join(map(_latex, own_axis))}),\ {_latex(own_angle)}"
@@ -167,11 +168,12 @@ class Frames:
     def orient_body_fixed(
         self, frame: str, reference: str, angles: Values, sequence: AxisSequence
     ) -> Frames:
-        """Return frames with ``frame`` turned in ``reference`` by three body fixed turns.
+        """Return frames with ``frame`` rotated in ``reference`` by three body fixed rotations.
 
         Parameters are those of `orientation.dcm_from_body_fixed`.
         """
-        dcm_from_body_fixed(angles, sequence)  # refuses what is not valid, before it is stored
+        # Refuse invalid input before storing it.
+        dcm_from_body_fixed(angles, sequence)
         own = _own(angles, (3,), "angles", is_symbolic(angles))
         return self._with(
             frame, reference, *(_AxisTurn(axis, angle) for axis, angle in zip(sequence, own))
@@ -193,8 +195,9 @@ class Frames:
         return self._with(frame, reference, _MatrixTurn(own, r"\text{matrix}"))
 
     def orient_quaternion(self, frame: str, reference: str, quaternion: Values) -> Frames:
-        """Return frames with ``frame`` turned in ``reference`` by a
-        unit quaternion, scalar first.
+        """Return frames with ``frame`` rotated in ``reference`` by a unit quaternion.
+
+        Its scalar part comes first.
         """
         return self._with(
             frame, reference, _MatrixTurn(dcm_from_quaternion(quaternion), r"\text{quaternion}")
@@ -203,25 +206,26 @@ class Frames:
     def orient_space_fixed(
         self, frame: str, reference: str, angles: Values, sequence: AxisSequence
     ) -> Frames:
-        """Return frames with ``frame`` turned in ``reference`` about fixed axes.
+        """Return frames with ``frame`` rotated in ``reference`` about fixed axes.
 
         Parameters are those of `orientation.dcm_from_space_fixed`.
         """
-        dcm_from_space_fixed(angles, sequence)  # refuses what is not valid, before it is stored
+        # Refuse invalid input before storing it.
+        dcm_from_space_fixed(angles, sequence)
         own = _own(angles, (3,), "angles", is_symbolic(angles))
         # Rotations about fixed axes are body fixed rotations in reverse order.
         turns = zip(sequence[::-1], own[::-1])
         return self._with(frame, reference, *(_AxisTurn(axis, angle) for axis, angle in turns))
 
     def orient_rotation_vector(self, frame: str, reference: str, vector: Values) -> Frames:
-        """Return frames with ``frame`` turned in ``reference`` by a rotation vector, in radians."""
+        """Return frames with ``frame`` rotated in ``reference`` by a rotation vector in radians."""
         words = r"\text{rotation vector}"
         return self._with(frame, reference, _MatrixTurn(dcm_from_rotation_vector(vector), words))
 
     def orient_scipy_rotation(self, frame: str, reference: str, rotation: Rotation) -> Frames:
-        """Return frames with ``frame`` turned in ``reference`` by a SciPy ``Rotation``.
+        """Return frames with ``frame`` rotated in ``reference`` by a SciPy ``Rotation``.
 
-        It turns components along ``frame`` into components along ``reference``, as for
+        It converts components along ``frame`` to components along ``reference``, as for
         `orientation.dcm_from_scipy_rotation`.
         """
         dcm = dcm_from_scipy_rotation(rotation)
@@ -357,7 +361,7 @@ class Frames:
         return components
 
     def __eq__(self, other: object) -> bool:
-        """Whether the same frames are connected in the same pairs by the same orientations."""
+        """Check whether the same pairs of frames are connected by the same orientations."""
         if not isinstance(other, Frames):
             return NotImplemented
         pairs, others = (
@@ -381,9 +385,7 @@ class Frames:
         return sympy.Integer(0)  # type: ignore[no-any-return]
 
     def equation(self, target: str, source: str) -> Equation:
-        r"""Return ${}^D\mathbf{C}^A$ as the product over the
-        path, each factor with its turns.
-        """
+        r"""Return the matrix as the product over the path, each factor with its rotations."""
         edges = self._edges_between(target, source)
         factors = [
             rf"\underbrace{{{_symbol(edge.frame, edge.reference)}}}_{{{_description(edge)}}}"
@@ -392,9 +394,7 @@ class Frames:
         return Equation(f"{_symbol(target, source)} = " + r"\; ".join(factors or [r"\mathbf{I}"]))
 
     def reference_frames(self) -> dict[str, ReferenceFrame]:
-        """Return a dictionary of new SymPy ``ReferenceFrame``
-        objects, oriented like these frames.
-        """
+        """Return a dictionary of new SymPy ``ReferenceFrame`` objects, oriented like these."""
         import sympy.physics.mechanics as me
 
         names = list(

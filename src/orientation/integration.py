@@ -98,7 +98,7 @@ def turns_from_angular_velocity(
 
 
 def dcms_after_turns(start: Numbers, turns: Numbers) -> Array:
-    r"""Return an orientation, and those reached from it by successive turns.
+    r"""Return an orientation, and those reached from it by successive rotations.
 
     $$
     \mathbf{C}_{k+1} = \exp\left(-[\mathbf{r}_k]_\times\right)\mathbf{C}_k

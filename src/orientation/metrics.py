@@ -177,7 +177,8 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
             return guess
         begun = [(guess, angles)]
     except ValueError:
-        pass  # no single place to begin
+        # There is no single place to begin.
+        pass
     # Start from random orientations too: between orientations that are half a turn apart, rounding
     # would choose the way.
     starts = [*dcms[:: -(-len(dcms) // STARTS)], *random_orientations(16, 0)]

@@ -429,7 +429,8 @@ def number_array(value: object, item: tuple[int, ...], name: str) -> Array:
         if array.dtype == object and all(
             isinstance(entry, numbers.Real) and not isinstance(entry, bool) for entry in array.flat
         ):
-            array = array.astype(float)  # fractions, integers of any size
+            # These are fractions, or integers of any size.
+            array = array.astype(float)
         if array.dtype.kind not in "iuf":
             raise ValueError
     except (ValueError, OverflowError):
@@ -472,9 +473,11 @@ def number_tuples(value: object, shape: tuple[int, ...], name: str) -> Nested:
 def _tuples(value: object, name: str, whole: object) -> Nested:
     if hasattr(value, "free_symbols"):
         value = _floats(_listed(value), name)
-    elif hasattr(value, "tolist"):  # an array, or a number of NumPy
+    elif hasattr(value, "tolist"):
+        # An array, or a NumPy number.
         value = _unmasked(value).tolist()
-    elif hasattr(value, "__array__"):  # a table of another library
+    elif hasattr(value, "__array__"):
+        # A table of another library.
         from numpy import asarray
 
         value = asarray(value).tolist()

@@ -213,9 +213,9 @@ def multiply_quaternions(first: Values, second: Values) -> Matrix: ...
 def multiply_quaternions(first: Values, second: Values) -> Array | Matrix:
     r"""Hamilton product of two quaternions.
 
-    With $i^2 = j^2 = k^2 = ijk = -1$. If ``first`` turns $N$ to $A$ and ``second`` turns $A$ to
-    $B$, their product turns $N$ to $B$: quaternions are written in the order of the rotations, and
-    matrices in the opposite order, ${}^B\mathbf{C}^N = {}^B\mathbf{C}^A\,{}^A\mathbf{C}^N$.
+    With $i^2 = j^2 = k^2 = ijk = -1$. If ``first`` rotates $N$ to $A$ and ``second`` rotates $A$ to
+    $B$, their product rotates $N$ to $B$: quaternions are written in the order of the rotations,
+    and matrices in the opposite order, ${}^B\mathbf{C}^N = {}^B\mathbf{C}^A\,{}^A\mathbf{C}^N$.
 
     Parameters
     ----------

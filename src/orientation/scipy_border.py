@@ -1,7 +1,7 @@
 r"""The one place where this book's matrices meet SciPy's rotations.
 
-SciPy's ``Rotation`` of a frame $A$ in $N$ turns components measured along $A$ into components along
-$N$, so its matrix is ${}^N\mathbf{C}^A$. The transpose happens here and nowhere else.
+SciPy's ``Rotation`` of a frame $A$ in $N$ converts components along $A$ to components along $N$, so
+its matrix is ${}^N\mathbf{C}^A$. The transpose happens here and nowhere else.
 """
 
 from __future__ import annotations

@@ -89,7 +89,7 @@ def conversions(size):
         for library, function in ((numpy_q, "as_quat_array"), (quaternionic, "array"))
         for value in (quaternion, second)
     )
-    # A function for one item only raises AttributeError for more, as a missing one does.
+    # A function for one item only is treated as missing if there are more.
     single = SimpleNamespace(transforms3d=transforms3d, sm=sm, pyq=pyq) if single_item else None
     return {
         "Euler angles zxy to matrix": {

@@ -26,11 +26,11 @@ from .converter import converted, sides
 HERE = Path(__file__).parent
 PLACE = REPOSITORY / "_build" / "programs"
 STORED = REPOSITORY / "packages" / "orientation-lab" / "tests" / "workbench" / "answers.json"
-#: Two orientations without any special property, each by a unit vector and radians.
+#: Two generic orientations, each as a unit vector and an angle in radians.
 ORIENTATIONS = (((0.48, -0.6, 0.64), 1.1), ((-0.36, 0.48, 0.8), -2.0))
-#: npm installs three.js, which reads this.
+#: Programs that run in Node.js, with three.js from npm.
 BY_NODE = ("three.js", "glTF", "BVH")
-#: Some of them compute in single precision.
+#: The tolerance, since some programs compute in single precision.
 ROUNDING = 1e-5
 
 
@@ -104,7 +104,7 @@ def ask(program):
 
 
 def changes(stored, current):
-    """Return the changed answers of a program, a line each."""
+    """Return the changed answers of a program, one line each."""
     then, now = (
         {answer["asked"]: answer["numbers"] for answer in each["answers"]}
         for each in (stored, current)

@@ -1,5 +1,5 @@
-// What three.js answers, and its readers of glTF and BVH: node answers.mjs PROGRAM < questions.json, in a folder
-// whose node_modules hold three. As answers.py.
+// Print the answers of three.js and of its readers of glTF and BVH: node answers.mjs PROGRAM < questions.json, in a
+// folder whose node_modules contain three. It works like answers.py.
 import { readFileSync } from 'node:fs';
 import * as three from 'three';
 import { BVHLoader } from 'three/examples/jsm/loaders/BVHLoader.js';
@@ -20,7 +20,7 @@ function moved(channels, angles) {
   return turnedBy(new Quaternion().fromArray(new BVHLoader().parse(text).clip.tracks.find(({ name }) => name.endsWith('quaternion')).values));
 }
 
-// What each makes of a line of the card, row by row.
+// Return the matrix that each makes from a line of the card, row by row.
 const make = {
   'three.js': async (line) => {
     const made = new Function('three', `const { Euler, Matrix3, Quaternion } = three; return ${line};`)(three);
@@ -41,7 +41,7 @@ const ask = {
       ['new Matrix4().makeRotationAxis(axis, angle), row by row', MATRIX, rows(new Matrix4().makeRotationAxis(vector, angle))],
       ["new Euler().setFromQuaternion(q, 'XYZ')", { kind: 'Euler angles', sequence: 'xyz' }, new Euler().setFromQuaternion(turned, 'XYZ').toArray().slice(0, 3)]];
   },
-  // A node's rotation, and what its reader makes of a matrix in the file, which stands there column by column.
+  // A node's rotation, and what its reader makes of a matrix in the file, which is stored column by column.
   glTF: async (axis, angle) => {
     const vector = new Vector3(...axis), rotation = new Quaternion().setFromAxisAngle(vector, angle).toArray();
     const columns = new Matrix4().makeRotationAxis(vector, angle).elements;

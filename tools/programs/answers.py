@@ -1,11 +1,10 @@
 """Print the answers of one program: ``python answers.py PROGRAM < questions.json``.
 
-Run this in an environment that has the program. Each of the ``orientations`` comes as an axis and
-an angle, and the program itself makes it from these, or, for a camera, from what it sees. The
+Run this in an environment that has the program. Each of the ``orientations`` is an axis and an
+angle, from which the program makes the orientation itself, or, for a camera, from what it sees. The
 answers go to standard output as JSON: the version, and for each line that was run the form of its
-numbers, as `orientation_workbench.mismatch.table.KINDS` calls it, and the numbers, one
-orientation after another. ``made`` are the matrices that the program makes of the card's own
-``lines``.
+numbers, as in `orientation_workbench.mismatch.table.KINDS`, and the numbers, one orientation after
+another. ``made`` are the matrices that the program makes from the card's own ``lines``.
 """
 
 import json
@@ -67,7 +66,8 @@ def eigen(axis, angle):
     turn = eigenpy.AngleAxis(angle, axis)
     yield "AngleAxis(angle, axis).toRotationMatrix()", MATRIX, turn.toRotationMatrix()
     yield "Quaternion(AngleAxis(angle, axis)).coeffs()", XYZW, eigenpy.Quaternion(turn).coeffs()
-    # The first angle is from 0 to pi, whatever that does to the others. The chapter warns of it.
+    # The first angle is from 0 to pi, whatever that means for the others. The chapter warns of
+    # this.
     yield (
         "R.eulerAngles(2, 0, 1)",
         angles("zxy"),
@@ -102,7 +102,8 @@ CORNERS = np.array([(x, y, 5 + x * y + 0.3 * x) for x in (-1, 0.2, 1) for y in (
 def solve_pnp(axis, angle):
     cv2 = import_module("cv2")
     rows, place = axes_of_a_camera(axis, angle), np.array([0.3, -0.2, 0.1])
-    # A point to the right of the line of sight is seen on the right. No program has been run yet.
+    # Image coordinates by geometry alone: a point to the right of the line of sight is seen on the
+    # right.
     seen = CORNERS[:, :2] / CORNERS[:, 2:]
     _, vector, _ = cv2.solvePnP(CORNERS @ rows + place, seen, np.eye(3), None)
     yield "cv2.solvePnP(points, seen, K, None)[1]", VECTOR, vector
@@ -150,7 +151,7 @@ def nerfstudio(axis, angle):
     cameras = import_module("nerfstudio.cameras.cameras")
     to_world = np.c_[axes_of_a_camera(axis, angle).T, np.zeros(3)]
     camera = cameras.Cameras(torch.tensor(to_world)[None], 1.0, 1.0, 1.0, 1.0, 2, 2)
-    # Through the middle of a pixel right of the middle, below it, and straight on: right, up, back.
+    # Rays through the pixels to the right of, below and at the middle determine right, up and back.
     right, up, middle = (
         camera.generate_rays(0, coords=torch.tensor(place)).directions.numpy()
         for place in ([1.0, 2.0], [0.0, 1.0], [1.0, 1.0])
@@ -185,7 +186,7 @@ def kornia(axis, angle):
 
 
 def blender(axis, angle):
-    # This is Blender itself, which includes the other package.
+    # This is Blender itself, which includes mathutils.
     import_module("bpy")
     turned = import_module("mathutils").Quaternion(axis.tolist(), float(angle))
     yield "Quaternion(axis, angle)", WXYZ, turned
@@ -237,7 +238,7 @@ def urdf(axis, angle):
 
 
 def isaac_mathematics():
-    """Return the mathematics of the package, without starting its simulator."""
+    """Return the package's mathematics module, without starting its simulator."""
     if "isaaclab_math" not in sys.modules:
         path = next(Path(get_paths()["purelib"]).glob("**/isaaclab/utils/math.py"))
         specification = spec_from_file_location("isaaclab_math", path)
@@ -259,7 +260,7 @@ def isaac_lab(axis, angle):
 
 
 class Factor(np.ndarray):
-    """A matrix whose star is the product of matrices, as in Eigen."""
+    """A matrix whose ``*`` is the matrix product, as in Eigen."""
 
     def __new__(cls, entries):
         return np.asarray(entries).view(cls)
@@ -269,7 +270,7 @@ class Factor(np.ndarray):
 
 
 def names_of(program):
-    """What the card's lines of a program need to be run in Python."""
+    """Return the names that a program's lines on the card need in Python."""
     names = {"np": np}
     if program in ("OpenCV", "OpenCV solvePnP"):
         names["cv2"] = import_module("cv2")
@@ -312,7 +313,7 @@ def names_of(program):
 
 
 def matrix_by(program, line, names):
-    """Return the matrix of a line of the card, by rows, as the program makes it."""
+    """Return the matrix that the program makes from a line of the card, row by row."""
     if program == "MuJoCo model":
         module = import_module("mujoco")
         compiler, body = re.fullmatch(r"(<compiler [^>]*>)? ?(<body [^>]*)/>", line).groups()
@@ -324,7 +325,8 @@ def matrix_by(program, line, names):
         return data.xmat[1]
     if program == "URDF":
         return robot_with(line).get_transform("b", "a")[:3, :3]
-    if program == "COLMAP" and "(" not in line:  # as in images.txt
+    # This is the form in images.txt.
+    if program == "COLMAP" and "(" not in line:
         w, x, y, z = map(float, line.split())
         return names["pycolmap"].Rotation3d(np.array([x, y, z, w])).matrix()
     if program == "nerfstudio":

@@ -36,8 +36,8 @@ def converted(jobs):
     Parameters
     ----------
     jobs : list of dict
-        ``side``, and ``dcm`` or ``text``; with ``source``, whose matrix it is, its axes are
-        exchanged for the side's.
+        ``side``, and ``dcm`` or ``text``. With ``source``, the side the matrix comes from, its axes
+        are converted to the side's.
     """
     program = "".join(map(bundle.body, bundle.SHARED)) + APPLY.replace(
         "BODY", bundle.body("converter")
