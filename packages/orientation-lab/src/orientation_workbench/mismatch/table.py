@@ -161,8 +161,8 @@ SHARED = (
 INVERSE = {
     "matrix": f"one is {TRANSPOSE}",
     "one matrix": "the columns of the matrix are the body's axes, as in SciPy (in this book "
-    "its rows are); or the other numbers are the inverse, as in a JPL quaternion",
-    "quaternion": f"one is {CONJUGATE} (so is a JPL quaternion)",
+    "its rows are); or the other numbers are the inverse",
+    "quaternion": f"one is {CONJUGATE}",
     "Euler angles": "one is the inverse orientation",
     "rotation vector": "one is the rotation in the opposite sense",
     "axis and angle": "one is the rotation in the opposite sense",
