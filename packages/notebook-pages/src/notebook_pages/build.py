@@ -21,7 +21,8 @@ from .paths import (
     pages,
 )
 
-EXAM_CONTENTS = BUILD / "_toc.yml"  # the contents of an exam edition
+# The contents of an exam edition.
+EXAM_CONTENTS = BUILD / "_toc.yml"
 
 
 def what_prevents_building():

@@ -22,7 +22,7 @@ LABEL = re.compile(r"solutions?(?:-|$)")
 
 
 def leads_to_solution(node: nodes.Node) -> bool:
-    """Whether ``node`` refers to a worked solution, or to a page of them."""
+    """Check whether ``node`` refers to a worked solution, or to a page of them."""
     if not isinstance(node, addnodes.pending_xref):
         return False
     target = node["reftarget"]

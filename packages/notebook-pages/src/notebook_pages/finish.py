@@ -108,4 +108,5 @@ def finish(app, exception):
 
 
 def setup(app):
-    app.connect("build-finished", finish, priority=990)  # after all others
+    # Run this after all others.
+    app.connect("build-finished", finish, priority=990)

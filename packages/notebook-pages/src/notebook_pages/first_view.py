@@ -58,4 +58,5 @@ def first_part(body):
 
 
 def setup(app):
-    app.connect("doctree-resolved", mark, priority=990)  # after every change to the page's content
+    # Run this after every change to the page's content.
+    app.connect("doctree-resolved", mark, priority=990)

@@ -281,7 +281,8 @@ def spoken(box):
     return Box(box.tag, [], {}, inside, rest)
 
 
-IN_A_CELL = {"scriptlevel": "0", "displaystyle": "false"}  # the defaults in a table
+# These are the defaults in a table.
+IN_A_CELL = {"scriptlevel": "0", "displaystyle": "false"}
 
 
 def lighten(html, tex):

@@ -133,6 +133,7 @@ def built(script):
 def setup(app):
     app.connect("config-inited", prefer_stills)
     app.connect("doctree-read", drop_widget_state)
-    app.connect("html-page-context", add_scripts, priority=960)  # after page.py has set the styles
+    # Run this after page.py has set the styles.
+    app.connect("html-page-context", add_scripts, priority=960)
     # Run this before page.py minifies the scripts.
     app.connect("build-finished", bring, priority=910)

@@ -177,7 +177,7 @@ class Project:
 
 
 class Ready:
-    """A project of which there is only the wheel, with the interface of `Project`."""
+    """A project of which only the wheel exists, with the interface of `Project`."""
 
     def __init__(self, file: str, packages: Iterable[str]) -> None:
         self.file, self.packages = REPOSITORY / file, tuple(packages)

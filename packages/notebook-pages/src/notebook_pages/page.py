@@ -398,7 +398,7 @@ def take_later(site, styles):
 def in_ems(text):
     """Return styles or scripts of the theme with the widths of windows in ems instead of pixels.
 
-    Whoever reads with larger letters has room for fewer columns.
+    A reader who uses larger letters has room for fewer columns.
     """
     return re.sub(
         r"(?<=-width:) ?([\d.]+)px(?=\))", lambda width: f"{float(width[1]) / 16}em", text

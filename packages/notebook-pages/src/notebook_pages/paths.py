@@ -144,7 +144,7 @@ def let_everybody_read(folder: Path) -> None:
 
 
 def exam_edition(book: Path = Path()) -> bool:
-    """Whether to omit worked solutions: BOOK_EXAM=1, or ``exam_edition`` in ``_config.yml``."""
+    """Check whether to omit worked solutions, by BOOK_EXAM or ``exam_edition`` in _config.yml."""
     if chosen := os.environ.get("BOOK_EXAM"):
         return chosen != "0"
     file = book / "_config.yml"
@@ -153,7 +153,7 @@ def exam_edition(book: Path = Path()) -> bool:
 
 
 def is_solutions(page: str) -> bool:
-    """Whether a page contains worked solutions, according to its name."""
+    """Check whether a page contains worked solutions, according to its name."""
     return page.rpartition("/")[2].startswith("solutions")
 
 

@@ -33,7 +33,8 @@ FACES = (
     ("Source Code Pro", "source-code-pro", "latin", 700),
     ("Source Code Pro Greek", "source-code-pro", "greek", 400),
 )
-LONG = 14  # lines of code that need not stay on one page
+# The most lines of code that must stay on one page.
+LONG = 14
 # Interactive elements, and others that are out of place on paper: links to themselves, the code
 # that draws figures, controls, the list of links on the front page, and the reply of a check to an
 # empty answer.
@@ -41,7 +42,8 @@ ONLY_ON_SCREEN = (
     "a.headerlink, script, template, details.hide, button, [hidden], .sd-container-fluid, "
     ".whole-book, .output:has([data-outcome='not attempted']), [data-stop] style"
 )
-WIDTH = 612  # of the text, in pixels; print.css sets the margins that leave it
+# The width of the text in pixels; print.css sets the margins that leave it.
+WIDTH = 612
 # Attributes that name other elements.
 NAMES_OF_OTHERS = ("aria-labelledby", "aria-describedby", "for", "headers")
 NOTE = (
@@ -51,7 +53,8 @@ NOTE = (
 )
 # A prefix of the words of a formula, which distinguishes it from a picture.
 FORMULA = "\ue000"
-SMALLEST = 0.6  # of the size of the text; an element that is still too wide stops the printing
+# The smallest size relative to the text; an element that is still too wide stops the printing.
+SMALLEST = 0.6
 
 # Shrink elements that are wider than their column, and return those that are still too wide. A page
 # is as wide as the document in a window of the same width, so both have the same layout.

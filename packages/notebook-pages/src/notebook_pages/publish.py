@@ -46,7 +46,8 @@ def description(doctree):
         while inside is not None and not isinstance(inside, ASIDE):
             inside = inside.parent
         words = " ".join(paragraph.astext().replace(r"^\circ", "°").split())
-        words = re.sub(r" ?\[[^]]*\b\d{4}\w?\]", "", words)  # names of sources
+        # Remove the names of sources.
+        words = re.sub(r" ?\[[^]]*\b\d{4}\w?\]", "", words)
         formula = any(
             set(node.astext().replace(r"^\circ", "")) & set(r"\{^_")
             for node in paragraph.findall(nodes.math)
@@ -85,7 +86,8 @@ def write_head(app, pagename, templatename, context, doctree):
     title = plain_title(context)
     words = description(doctree) if doctree is not None else ""
     if words and pagename.startswith(STORED):
-        words = shortened(f"{title}. {words}")  # such pages begin alike
+        # Such pages begin alike.
+        words = shortened(f"{title}. {words}")
     context["description"] = words or f"{title}: a page of {book}."
     context["shared_title"] = book if pagename == app.config.root_doc else f"{title} – {book}"
     context["shared_kind"] = "book" if pagename == app.config.root_doc else "article"

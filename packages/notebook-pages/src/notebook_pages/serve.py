@@ -52,7 +52,8 @@ def main():
     try:
         book = server(port=port)
     except OSError:
-        book = server()  # the port is in use
+        # The port is in use, so take any other.
+        book = server()
     print(f"The book is at http://127.0.0.1:{book.server_port}/ (stop with Ctrl+C)", flush=True)
     try:
         book.serve_forever()

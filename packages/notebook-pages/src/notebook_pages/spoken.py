@@ -1,7 +1,7 @@
 """A formula in words, from its MathML, for the PDF and for programs without MathML.
 
-The words are those of somebody who reads the formula to a colleague. Superscripts on both sides of
-a letter name frames and are no powers. A hat is spoken once, with its direction. A raised T after
+The words are those of a person who reads the formula to a colleague. Superscripts on both sides of
+a letter name frames and are not powers. A hat is spoken once, with its direction. A raised T after
 an expression is its transpose. A cross between two numbers is "times", or "by" in a shape.
 """
 
@@ -10,7 +10,7 @@ import unicodedata
 
 from bs4 import NavigableString
 
-# Characters that are read out by another word than their Unicode name.
+# Characters that are read as something other than their Unicode name.
 WORDS = {
     "=": "equals", "+": "plus", "−": "minus", "-": "minus", "±": "plus or minus",
     "∓": "minus or plus", "(": "open bracket", ")": "close bracket", "[": "open square bracket",
@@ -70,7 +70,7 @@ def bare(node):
 
 
 def is_simple(node):
-    """Whether a listener can tell where ``node`` ends.
+    """Check whether a listener can tell where ``node`` ends.
 
     This is so for one letter or number, with its marks or sign, and for a few of them in a row.
     """
@@ -108,7 +108,7 @@ def sign(node):
 
 
 def raised(power, after_frame):
-    """Return the words of a superscript; ``after_frame``: of a letter with one before it, too."""
+    """Return the words of a superscript; ``after_frame``: the letter has one before it, too."""
     text = bare(power)
     frame = re.fullmatch("[A-Z]", text) and (after_frame or text != "T")
     if not frame and text in POWERS:
@@ -129,7 +129,7 @@ def lowered(base, index):
 
 
 def is_before(node):
-    """Whether a script is before its letter, which means that its base is empty."""
+    """Check whether a script is before its letter, which means that its base is empty."""
     return node.name in SCRIPTS and parts(node)[0].name == "mrow" and not bare(parts(node)[0])
 
 
@@ -166,10 +166,11 @@ def table(node):
 
 
 def product(text, before, after):
-    """Return the words of × and ⋅ between their neighbours."""
+    """Return the words for × and ⋅ between their neighbours."""
     numbers = [node is not None and bare(node)[:1].isdecimal() for node in (before, after)]
     if text == "×" and all(numbers) and len(bare(before)) == len(bare(after)) == 1:
-        return "by"  # the shape of a matrix
+        # This is the shape of a matrix.
+        return "by"
     return "times" if any(numbers) else {"×": "cross", "⋅": "dot"}[text]
 
 
@@ -186,7 +187,7 @@ def argument(node):
 
 
 def is_letter(node):
-    """Whether ``node`` is an upright letter, as in names of several letters."""
+    """Check whether ``node`` is an upright letter, as in names of several letters."""
     upright = node is not None and node.name == "mi" and node.get("mathvariant") == "normal"
     return upright and re.fullmatch("[A-Za-z]", bare(node)) is not None
 

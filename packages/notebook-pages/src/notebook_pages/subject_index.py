@@ -18,7 +18,8 @@ GLOSSARY, NOTATION = "appendix/glossary", "appendix/notation"
 REFERENCE = ("appendix/reference", "appendix/reference-going-further")
 # Pages that mention everything.
 NOT_LISTED = (GLOSSARY, NOTATION, *REFERENCE, "index")
-MOST = 6  # pages of a term that is mentioned but nowhere referred to
+# The most pages listed for a term that is mentioned but never referred to.
+MOST = 6
 
 
 class subject_index(nodes.General, nodes.Element):

@@ -1,9 +1,8 @@
-"""Every page that is a notebook can be taken away as a notebook and as a script.
+"""Offer every page that is a notebook as a notebook and as a script.
 
-Both hold the page's prose in plain Markdown, with the numbers and names that the book
-gives to equations, figures and exercises, and the code as it stands in the chapter.
-Outputs are left out: the reader's own run makes them, and they cannot be old. The package
-that the code imports lies beside them.
+Both contain the page's prose in plain Markdown, with the book's numbers and names of equations,
+figures and exercises, and the code of the chapter. Outputs are left out, because the reader's own
+run makes new ones. The packages that the code imports are offered beside them.
 """
 
 import shutil
@@ -26,7 +25,7 @@ NO_METADATA = {"notebook_metadata_filter": "-all", "cell_metadata_filter": "-all
 
 
 def notebook_pages():
-    """The names of the pages that are notebooks."""
+    """Return the names of the pages that are notebooks."""
     return [page for page in pages() if Path(f"{page}.ipynb").is_file()]
 
 
@@ -40,15 +39,14 @@ def is_notebook(app, pagename, doctree):
 
 
 def first_words(title):
-    """The beginning of `introduction`, by which it is found again."""
+    """Return the beginning of `introduction`, which identifies it."""
     return f"> This is a page of *{title}*."
 
 
 def packages_archive():
-    """The name of the zip of all packages that the notebooks import; its
-    version is that of the newest of them.
+    """Return the name of the zip of all packages that the notebooks import, or an empty string.
 
-    Empty in a book that has no packages.
+    Its version is that of the newest of them. A book without packages has no zip.
     """
     if not PROJECTS:
         return ""
@@ -58,7 +56,7 @@ def packages_archive():
 
 
 def introduction(title):
-    """What the notebook of a page says first, below its title, in a paragraph of one line."""
+    """Return the note below the title of a page's notebook, as a paragraph of one line."""
     if not PROJECTS:
         return f"{first_words(title)} {LICENCES_SAID}".rstrip()
     return (
@@ -74,7 +72,7 @@ def make_notebook(app, docname, doctree):
     cells, next_source = [], 0
 
     def add_code(stop):
-        """Add the code cells up to ``stop``, those that the page hides among them."""
+        """Add the code cells up to ``stop``, including those that the page hides."""
         nonlocal next_source
         for cell in source.cells[next_source:stop]:
             if cell.cell_type == "code":
@@ -145,7 +143,7 @@ def chapter_downloads(app, pagename, doctree):
 
 
 def exercise_downloads(app, pagename, doctree):
-    """An exercise is taken away as it was released: graders know its cells by their metadata."""
+    """Offer an exercise as released, since graders recognise its cells by their metadata."""
     target = Path(app.outdir) / FOLDER / f"{pagename}.ipynb"
     target.parent.mkdir(parents=True, exist_ok=True)
     shutil.copy(app.env.doc2path(pagename), target)
@@ -164,7 +162,7 @@ def exercise_downloads(app, pagename, doctree):
 
 
 def pack_exercises(app, exception):
-    """Put the archive of all exercises into the site, if what it holds has changed."""
+    """Put the archive of all exercises into the site if its content has changed."""
     if exception or app.builder.format != "html" or "exercises" not in REGISTERED:
         return
     archive = Path(app.outdir) / FOLDER / ARCHIVE
@@ -178,7 +176,7 @@ def pack_exercises(app, exception):
 
 
 def pack_data(app, exception):
-    """Put data into the site as it stands in its package, with its licences."""
+    """Put data into the site as it is in its package, with its licences."""
     if exception or app.builder.format != "html":
         return
     for name, data in DATA.items():
@@ -190,9 +188,7 @@ def pack_data(app, exception):
 
 
 def build_wheels(app, exception):
-    """Build our packages into the site, as wheels and all in one zip; their
-    names tell what they were built from.
-    """
+    """Build our packages into the site, as wheels and all in one zip, named by their versions."""
     if exception or app.builder.format != "html" or not PROJECTS:
         return
     folder = Path(app.outdir) / FOLDER
@@ -213,7 +209,7 @@ def build_wheels(app, exception):
 
 
 def note_packages(app, config):
-    """Write every page anew that names the packages, when they get another version."""
+    """Write every page that names the packages again when their version changes."""
     config.take_away_packages = packages_archive()
 
 

@@ -61,12 +61,12 @@ def of_site() -> str:
 
 
 def is_unchanged(made_from: str) -> bool:
-    """Whether the sources and the site are those that `note` recorded last."""
+    """Check whether the sources and the site are those that `note` recorded last."""
     return STAMP.is_file() and STAMP.read_text("utf8") == made_from + of_site()
 
 
 def note(made_from: str) -> None:
-    """Record what the complete site was made from: the sources as they were when the build began.
+    """Record the sources of the complete site, as they were when the build began.
 
     Files saved during the build belong to the next one.
     """

@@ -1,8 +1,9 @@
 """The files of our packages that a notebook uses, whose changes may change its results.
 
-Starting from the imports of its cells, this follows every import in those modules, also inside
-functions, to the files beside them (scripts, style sheets) and to the sealed questions that the
-notebook asks. Files that it does not reach, such as the grader, do not make a chapter run again.
+Starting from the imports of its cells, this follows every import in those modules, including those
+inside functions, to the files beside them (scripts, style sheets) and to the sealed questions that
+the notebook asks. Files that it does not reach, such as the grader, do not make a chapter run
+again.
 """
 
 import ast
@@ -59,7 +60,7 @@ def file_of(module: str) -> Path | None:
 
 
 def names_imported(code: str, module: str = "") -> set[str]:
-    """Return all that ``code`` may import, by full names.
+    """Return everything that ``code`` may import, by full names.
 
     ``module`` is the module of the code, for relative imports.
     """

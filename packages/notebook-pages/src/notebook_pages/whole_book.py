@@ -29,7 +29,7 @@ from .paths import (
 NAME = REGISTERED.get("name", "book")
 FOLDER = HTML / "take-away"
 PDF, EPUB, ZIP = (FOLDER / f"{NAME}.{ending}" for ending in ("pdf", "epub", "zip"))
-# This file has a fingerprint of their sources.
+# The file with a fingerprint of their sources.
 STAMPS = BUILD / "whole-book.json"
 FRONT = "index.html"
 # The place for the links on the front page: a comment, and the text up to the second comment.

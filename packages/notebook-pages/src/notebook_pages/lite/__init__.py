@@ -72,7 +72,7 @@ def wheels_fetched():
 
 
 def is_compiled():
-    """Whether all fetched wheels have been byte-compiled before."""
+    """Check whether all fetched wheels have been byte-compiled before."""
     return all(runtime.compiled_form(wheel).exists() for part in wheels_fetched() for wheel in part)
 
 

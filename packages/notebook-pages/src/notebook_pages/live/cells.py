@@ -124,7 +124,7 @@ def shown_form(data):
 
 
 def alike(outputs, stored):
-    """Whether two lists of outputs are equal up to rounding in the last digits of numbers."""
+    """Check whether two lists of outputs are equal up to rounding in the last digits of numbers."""
     return [form for form, _ in outputs] == [form for form, _ in stored] and not any(
         move.too_far
         for (_, now), (_, before) in zip(outputs, stored)
@@ -139,12 +139,12 @@ def names_bound(code):
 
 
 def imports_numpy(code):
-    """Whether a cell imports NumPy itself."""
+    """Check whether a cell imports NumPy itself."""
     return any(name.partition(".")[0] == "numpy" for name in names_imported(code))
 
 
 def names_taken(code):
-    """Return the names that a cell may take from earlier ones: all it uses but does not import."""
+    """Return the names that a cell may take from earlier ones, which it does not import."""
     tree = parse(code)
     imported = {
         alias.asname or alias.name.partition(".")[0]

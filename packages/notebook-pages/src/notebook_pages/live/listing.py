@@ -29,7 +29,7 @@ def column(kind):
 
 
 def asks_nobody(kind):
-    """Whether a cell runs with the packages of this site, as that of a moving figure does."""
+    """Check whether a cell runs with the packages of this site, as that of a moving figure does."""
     return set(kind["needs"]) <= {"anywidget"}
 
 

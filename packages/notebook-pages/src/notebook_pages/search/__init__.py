@@ -20,15 +20,19 @@ from ..paths import YAML, esbuild, is_solutions, parts
 HERE = Path(__file__).parent
 SCRIPT, WORDS = Path("_static") / "search.js", Path("_static") / "search-words.js"
 WORD = re.compile(r"[a-z][a-z0-9_-]*[a-z0-9]")
-WORKBENCH = "workbench.html"  # a page that accepts pasted text, if the book has it
+# The page that accepts pasted text, if the book has it.
+WORKBENCH = "workbench.html"
 FIELDS = ("kind", "page", "anchor", "number", "title", "about", "asked")
 KINDS = ("page", "section", "term", "function", "exercise", "example", "equation", "figure")
 SYNONYMS, QUESTIONS = Path("appendix/synonyms.yml"), Path("appendix/questions.txt")
-LONG = 4  # longer phrases are loaded later, before anyone has typed so many words
+# Longer phrases are loaded later, before anyone has typed so many words.
+LONG = 4
 LONGEST_SENTENCE = 76
 LATER = ("equation", "figure")
-SAID_LATER = ("function", "exercise", "example")  # kinds whose first sentences are loaded later
-LITTLE = 0.5  # entries that count no more than this are found by their titles alone
+# Kinds whose first sentences are loaded later.
+SAID_LATER = ("function", "exercise", "example")
+# Entries that count no more than this are found by their titles alone.
+LITTLE = 0.5
 # Sections of every chapter, which nobody looks for by name.
 EVERYWHERE = ("Summary", "Exercises", "Learning objectives")
 REST = "script, style, svg, pre, .eqno, table, .admonition-title"

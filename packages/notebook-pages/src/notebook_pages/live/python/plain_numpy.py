@@ -18,10 +18,13 @@ import sys
 import traceback
 import types
 
-MOST_WORK = 4_000_000  # entries that one cell may make, which takes some seconds in a browser
-work = 0  # entries made since the page last asked
+# The most entries that one cell may make, which takes some seconds in a browser.
+MOST_WORK = 4_000_000
+# The number of entries made since the page last asked.
+work = 0
 nan = math.nan
-KINDS = {"b": bool, "i": int, "f": float}  # of entries: Booleans, integers, floats
+# The kinds of entries: Booleans, integers, floats.
+KINDS = {"b": bool, "i": int, "f": float}
 # Public names, as NumPy has them.
 OFFERED = {"pi": math.pi, "e": math.e, "inf": math.inf, "nan": nan, "newaxis": None}
 
@@ -174,7 +177,7 @@ def load_ipython_extension(shell):
 
 
 def is_fetched():
-    """Whether the real NumPy can be imported."""
+    """Check whether the real NumPy can be imported."""
     try:
         return any(finder.find_spec("numpy", None) for finder in sys.meta_path)
     # A finder raises this, with its own message about where NumPy could come from.
@@ -183,7 +186,7 @@ def is_fetched():
 
 
 def is_at_fault(error):
-    """Whether an error mentions the stand-in, or comes from SymPy's lookup of NumPy's functions.
+    """Check whether an error mentions the stand-in, or comes from SymPy's lookup of NumPy.
 
     The real NumPy may have another message or raise no error.
     """

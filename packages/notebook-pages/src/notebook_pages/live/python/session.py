@@ -33,9 +33,12 @@ REPRESENTATIONS = {
     "text/latex": "_repr_latex_",
 }
 WIDGET = "application/vnd.jupyter.widget-view+json"
-MOST_CHARACTERS = 60_000  # of one cell, because more would make a page slow
-FIRST_LINES = 50  # sent individually
-PAUSE = 0.1  # seconds between two messages after that
+# The most characters of one cell, because more would make a page slow.
+MOST_CHARACTERS = 60_000
+# The first lines of a cell are sent individually.
+FIRST_LINES = 50
+# Seconds between two messages after that.
+PAUSE = 0.1
 
 
 class Missing:
