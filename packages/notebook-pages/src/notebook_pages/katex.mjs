@@ -1,4 +1,4 @@
-// KaTeX for the build: a formula as a line of JSON comes in, its HTML goes out the same way.
+// Set formulas with KaTeX for the build: reads each formula as a line of JSON, and writes its HTML the same way.
 import { createInterface } from "node:readline";
 import { createRequire } from "node:module";
 
@@ -13,7 +13,7 @@ function answer({ tex, display, stretch }) {
   }
 }
 
-console.warn = () => {}; // what it warns of, it also throws
+console.warn = () => {}; // KaTeX also throws an error for everything that it warns about
 for await (const line of createInterface({ input: process.stdin })) {
   process.stdout.write(`${JSON.stringify(answer(JSON.parse(line)))}\n`);
 }

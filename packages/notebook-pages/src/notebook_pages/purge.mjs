@@ -1,9 +1,9 @@
-// What of a style sheet a site needs, and when: node purge.mjs NODE_MODULES NAMES --of SITE finds the names that its pages
-// hold, and keeps them in NAMES page by page, for pages change seldom: the others use what it has found.
-// node purge.mjs NODE_MODULES NAMES SHEET FILE... takes out of the sheet what no page uses. The files are scripts, whose words
-// may become classes, and other sheets, which may ask for values of this one.
-// node purge.mjs NODE_MODULES NAMES SHEET --later LATER moves into another sheet what no page uses as it comes, before its
-// scripts have run.
+// Find out which parts of a style sheet a site needs, and when. Call it in three ways:
+// node purge.mjs NODE_MODULES NAMES --of SITE stores the names in the pages of the site in the file NAMES, page by page, as
+// pages seldom change. The other two use this file.
+// node purge.mjs NODE_MODULES NAMES SHEET FILE... removes from the sheet what no page uses. The files are scripts, whose
+// words may become classes, and other sheets, which may use variables of this one.
+// node purge.mjs NODE_MODULES NAMES SHEET --later LATER moves to another sheet what no page uses before its scripts run.
 import { createRequire } from "node:module";
 import { createHash } from "node:crypto";
 import { existsSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
@@ -13,13 +13,13 @@ import { fileURLToPath } from "node:url";
 const [modules, notes, sheet, ...files] = process.argv.slice(2);
 const require = createRequire(join(modules, "package.json"));
 
-// Every word of a script that stands in quotes.
+// All words of a script that are inside quotation marks.
 function quoted(script) {
   const strings = script.replace(/^\s*\/\/.*$/gm, "").match(/"[^"\n]*"|'[^'\n]*'|`[^`]*`/g) ?? [];
   return strings.join(" ").match(/[A-Za-z][\w-]*/g) ?? [];
 }
-// Of a page, its elements, ids, classes and attributes: a word of the text is none. To them come the words of the scripts
-// that stand in it, for these run before it is seen, and those of a comment that keeps a place for what comes last.
+// The elements, ids, classes and attributes of a page, but not the words of its text. The words of its inline scripts
+// are included, as these run before the page is seen, and so are the words of comments that are placeholders.
 const KINDS = ["tags", "classes", "ids", "attributes", "values", "undetermined"];
 function namesIn(page) {
   const found = Object.fromEntries(KINDS.map((kind) => [kind, new Set()]));
@@ -39,7 +39,7 @@ function namesIn(page) {
 function sorted(found) {
   return Object.fromEntries(KINDS.map((kind) => [kind, [...found[kind]].sort()]));
 }
-// The names of all pages, by kind. Notebooks bring their own styles; and what finish.py writes into pages is no name.
+// The names of all pages, by kind. The styles of notebooks and the changes that finish.py makes do not count.
 function namesOf(site) {
   const memory = `${notes}.pages`, known = existsSync(memory) ? JSON.parse(readFileSync(memory, "utf8")) : {}, used = {};
   const program = readFileSync(fileURLToPath(import.meta.url), "utf8");
@@ -54,8 +54,8 @@ function namesOf(site) {
   writeFileSync(memory, JSON.stringify(used));
   return sorted(all);
 }
-// Of the theme's scripts, the classes that they give to what is there: most of what else they make belongs to parts of a
-// page that no page here has.
+// From the theme's scripts, take only the classes that they give to existing elements: most of what they create belongs
+// to parts of a page that the pages of the book do not have.
 function wordsIn(name) {
   const script = readFileSync(name, "utf8");
   return name.includes("/scripts/") ? [...script.matchAll(/classList\.(?:add|toggle)\("([\w-]+)/g)].map(([, name]) => name) : quoted(script);
@@ -77,9 +77,9 @@ const css = sheet === "--of" ? "" : readFileSync(sheet, "utf8");
 if (sheet === "--of") {
   writeFileSync(notes, JSON.stringify(namesOf(files[0])));
 } else if (files[0] === "--later") {
-  // Each rule gets a number, and those whose numbers are left over from the pages alone are needed at once. What a reader
-  // does without a script, such as to point at something, counts as [open], which is always there. So do rules with an
-  // address, which would mean another one elsewhere.
+  // Number the rules. The rules that remain for the pages alone are needed at once. The reader's actions that need no
+  // script, such as pointing at something, are replaced by [open], which always exists. Rules with an address are kept
+  // too, because the address would mean something else in another file.
   const root = require("postcss").parse(css);
   let count = 0;
   root.walkRules((rule) => rule.append({ prop: "--rule", value: String(count++) }));
@@ -99,7 +99,7 @@ if (sheet === "--of") {
   writeFileSync(sheet, part((rule) => atOnce.has(rule.last.value)).toString());
   writeFileSync(files[1], later.toString());
 } else {
-  // Then values that nothing asks for: neither this sheet, nor those of the book.
+  // Then remove the variables that neither this sheet nor the sheets of the book use.
   const others = files.map((name) => readFileSync(name, "utf8")).join("");
   let kept = await purged(css, files.filter((name) => name.endsWith(".js")), { keyframes: true, fontFace: true }), before;
   do {

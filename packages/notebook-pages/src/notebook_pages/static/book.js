@@ -1,11 +1,11 @@
-// What lies below the first view (see first_view.py) is laid out when that stands: a few blocks at a time, from the top
-// down, so that the page answers meanwhile. Whoever needs the page whole before, takes the class "in-parts" away.
+// Lay out what is below the first view (see first_view.py) once that is shown: a few blocks at a time, from the top
+// down, so that the page responds meanwhile. To lay out the whole page at once, remove the class "in-parts".
 {
   const root = document.documentElement;
   const later = root.classList.contains("in-parts") ? [...document.querySelectorAll(".later")] : [];
   const SLICE = 6; // milliseconds
   const whole = () => root.classList.remove("in-parts");
-  const whenIdle = window.requestIdleCallback?.bind(window) ?? ((work) => setTimeout(work)); // not every browser tells when it is
+  const whenIdle = window.requestIdleCallback?.bind(window) ?? ((work) => setTimeout(work)); // not in every browser
   const goOn = () => {
     const start = performance.now();
     while (later.length && performance.now() - start < SLICE) {
@@ -16,15 +16,15 @@
     if (later.length && root.classList.contains("in-parts")) whenIdle(goOn, { timeout: 200 });
     else whole();
   };
-  // The typefaces of the whole page come first: a later one would have its text laid out once more.
+  // Load the typefaces of the whole page first: a face that came later would cause its text to be laid out again.
   const faces = () => Promise.all(allFaces.map((face) => document.fonts.load(face))).catch(() => {});
   const aWhile = () => new Promise((resolve) => setTimeout(resolve, 3000));
   const frame = () => new Promise(requestAnimationFrame);
   let ran;
-  window.figuresRan = new Promise((end) => { ran = end; }); // for whoever asks them for something
+  window.figuresRan = new Promise((end) => { ran = end; }); // for scripts that need the figures
   const begin = async () => {
     while (root.classList.contains("settling")) await frame();
-    // The frame that shows the first view is drawn before anything is asked for that it does not need.
+    // Wait until the frame with the first view is drawn before requesting anything that it does not need.
     await frame();
     await frame();
     ran(Promise.all([...document.querySelectorAll("link[rel='figure-script']")].map(({ href: src }) => new Promise((end) => {
@@ -40,13 +40,13 @@
   document.addEventListener("click", ({ target }) => target.closest("a[href*='#']") && whole(), true);
 }
 
-// On a busy machine Chromium now and then stays at the top of a page whose address names a place in it.
+// On a busy machine, Chromium sometimes stays at the top of a page although the address names a place in it.
 addEventListener("load", () => requestAnimationFrame(() => {
   const arrives = performance.getEntriesByType("navigation")[0]?.type === "navigate";
   if (arrives && !scrollY) document.getElementById(location.hash.slice(1))?.scrollIntoView();
 }));
 
-// What a reader has moved stands there again after Back and after a reload.
+// Restore what the reader has moved, after Back and after a reload.
 {
   const figures = () => [...document.querySelectorAll("figure.moving")];
   const moved = `moved ${location.pathname}`;
@@ -57,8 +57,8 @@ addEventListener("load", () => requestAnimationFrame(() => {
   });
 }
 
-// When a telephone is turned or a window made narrower, what the reader has in hand, or else the first line that is seen,
-// stays where it was. Lines are looked for at a few heights, because to measure all of them would lay out the whole page.
+// When a phone is turned or a window made narrower, keep what the reader is using, or else the first visible line, in
+// its place. Lines are looked for at a few heights only, because measuring all of them would lay out the whole page.
 {
   const LINE = ".bd-article :is(h1, h2, h3, p, li, tr, pre, .cm-line, .math):not(figure *)";
   let kept, place, timer, width = innerWidth;
@@ -77,7 +77,7 @@ addEventListener("load", () => requestAnimationFrame(() => {
   };
   for (const name of ["scroll", "focusin"]) addEventListener(name, soon, { passive: true });
   addEventListener("resize", () => {
-    if (innerWidth === width) return; // only the keyboard or the bar of addresses has come
+    if (innerWidth === width) return; // only the keyboard or the address bar has appeared
     width = innerWidth;
     if (kept?.isConnected && !document.documentElement.classList.contains("lecture"))
       scrollBy({ top: topOf(kept) - Math.min(place, innerHeight / 2), behavior: "instant" });
@@ -85,10 +85,10 @@ addEventListener("load", () => requestAnimationFrame(() => {
   });
 }
 
-// Boxes that scroll can be reached by keyboard, but only while they overflow. They are looked at when they have been
-// laid out, never before: to measure a box that nobody sees yet would lay out the page.
+// Make boxes that scroll reachable by keyboard, but only while they overflow. They are checked after they have been
+// laid out, never before: measuring a box that nobody sees yet would lay out the page.
 const watch = new ResizeObserver((entries) => {
-  // What has been folded away has no size, and is looked at when it is unfolded.
+  // A folded box has no size, and is checked when it is unfolded.
   const boxes = entries.filter(({ contentRect }) => contentRect.width).map(({ target }) => {
     const wide = target.scrollWidth > target.clientWidth + 1;
     return [target, wide || (!target.matches(".math-box, figure") && target.scrollHeight > target.clientHeight)];
@@ -102,10 +102,10 @@ const watch = new ResizeObserver((entries) => {
     }
   }
 });
-window.watchWidth = (box) => watch.observe(box); // also for the theme's boxes, and what a page puts out later
+window.watchWidth = (box) => watch.observe(box); // also for the boxes of the theme and later outputs
 document.querySelectorAll(".math-box, figure.orientation-figure").forEach(watchWidth);
 
-// A formula is copied as its TeX, not as its drawing and its words for the ear, a number as programs read it, a button not.
+// Copy a formula as its TeX, without its drawing and spoken text, a number as programs read it, and no buttons.
 document.addEventListener("copy", (event) => {
   const chosen = getSelection();
   if (event.defaultPrevented || chosen.isCollapsed) return;
@@ -123,7 +123,7 @@ document.addEventListener("copy", (event) => {
     const fence = formula.parentElement.matches(".katex-display") ? "$$" : "$";
     formula.replaceWith(fence + (formula.dataset.tex ?? formula.querySelector("annotation").textContent) + fence);
   }
-  document.body.append(copy); // so that the browser knows where its lines end
+  document.body.append(copy); // so that the browser knows where the lines end
   const shown = (formulas.length || buttons.length ? copy.innerText : String(chosen)).replaceAll("\u2007", " ");
   event.clipboardData.setData("text/plain", shown.replace(/\u2212(?=[\d.])/g, "-"));
   event.clipboardData.setData("text/html", copy.innerHTML);
@@ -131,7 +131,7 @@ document.addEventListener("copy", (event) => {
   event.preventDefault();
 });
 
-// Who reports a mistake tells where: the section that is being read.
+// A report of a mistake names the section that is being read.
 const report = document.querySelector("a.report-mistake");
 report?.addEventListener("click", () => {
   const above = [...document.querySelectorAll(".bd-article :is(h1, h2, h3)")].filter((h) => h.getBoundingClientRect().top < innerHeight / 2);
@@ -143,7 +143,7 @@ report?.addEventListener("click", () => {
   report.href = address;
 });
 
-// The take-away menu closes like any menu: by Escape, or by a press elsewhere.
+// Close the take-away menu like any menu: by Escape, or by a click elsewhere.
 const menu = document.querySelector("details.take-away");
 if (menu) {
   document.addEventListener("click", (event) => {
@@ -157,19 +157,19 @@ if (menu) {
   });
 }
 
-// Numbers that stand below each other stay so, and lines of code: on a narrow screen they scroll. As in live/js/output.js.
+// Numbers in columns and lines of code keep their lines: on a narrow screen they scroll. Same as in live/js/output.js.
 for (const text of document.querySelectorAll("div.cell_output .output pre")) {
   text.classList.toggle("columns", Boolean(text.closest(".text_plain")) || /^ *\[|^ {4}|\S {2,}\S/m.test(text.textContent));
 }
 
-// What a check says where nobody has answered yet is known from the dots in its cell.
+// Hide the result of a check that nobody has answered yet, which the dots in its cell show.
 for (const output of document.querySelectorAll("div.cell_output > .output")) {
   output.hidden = /^\s*…\s*Not attempted/.test(output.textContent);
 }
 
 document.querySelector("button.print-page")?.addEventListener("click", () => print());
 
-// The theme brings the contents back to where they stood on the page before; the entry of this page is to be seen.
+// The theme restores the scroll position of the contents from the page before; show the entry of this page.
 {
   const entry = document.querySelector(".bd-sidebar-primary li.current > a.current");
   const side = entry?.closest(".bd-sidebar-primary");
@@ -180,12 +180,12 @@ document.querySelector("button.print-page")?.addEventListener("click", () => pri
   if (entry) addEventListener("load", show);
 }
 
-// Load the search when somebody goes to a field of it, the lecture when it begins. No key leads to either by itself: who
-// dictates to the computer, or types where nothing takes text, would set it off. The theme opens the search by Ctrl+K.
+// Load the search when its field is focused, and the lecture when it starts. No single key does either, as dictation,
+// or typing outside a text field, would trigger it. The theme opens the search by Ctrl+K.
 {
   const load = (name, onload) => {
     const link = document.querySelector(`link[rel='${name}-script']`);
-    const onerror = () => document.head.append(link); // what did not come is asked for again
+    const onerror = () => document.head.append(link); // requests it again if it failed
     if (link) document.head.append(Object.assign(document.createElement("script"), { src: link.href, onload, onerror }));
     link?.remove(); // once
   };

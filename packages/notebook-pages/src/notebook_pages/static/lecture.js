@@ -1,7 +1,7 @@
-// The lecture: the page in the steps that its author marked, at the size of a hall, with its figures alive. A button
-// begins it, and no key does: one letter must not turn the page of somebody who dictates or types. The keys within it are
-// said by "?". Nothing is moved within the page: what is not shown is hidden, and what is shown lies over everything
-// else. book.js loads this when somebody asks for it, with its styles.
+// The lecture: the page in the steps that its author marked, at the size of a lecture hall, with working figures. It
+// starts by a button and not by a key, because a single letter must not change the page for somebody who dictates or
+// types. The key "?" shows all keys. Nothing is moved within the page: what is not shown is hidden, and what is shown
+// covers everything else. book.js loads this script and its styles when they are needed.
 {
   const root = document.documentElement;
   const article = document.querySelector(".bd-article");
@@ -17,8 +17,8 @@
     return words?.textContent.trim() ?? "";
   };
 
-  // Steps are marked in the notebook (lecture.py). Or they are the stops of an essay, the sections that hold something
-  // with data-stop: such a page moves its own figure as it is scrolled, so its text is for the speaker.
+  // The steps are marked in the notebook (lecture.py), or they are the stops of an essay, the sections with a
+  // data-stop: such a page moves its own figure as it is scrolled, so its text is for the speaker.
   const stops = [...new Set([...document.querySelectorAll("[data-stop]")].map((stop) => stop.closest("section")))];
   const items = [...(document.querySelector("template#lecture")?.content.querySelectorAll("li[data-shows]") ?? [])];
   const steps = stops.length
@@ -50,7 +50,7 @@
   const menu = make("dialog", { className: "lecture-menu" });
   menu.setAttribute("aria-label", "Outline of the lecture");
 
-  // ---- a prediction is voted by show of hands: the numbers are entered, the shares are seen, then the answer ----
+  // ---- vote on a prediction by show of hands: enter the counts, see the shares, then the answer ----
   const votes = new Map();
   const ballot = (box) => {
     if (box.dataset.kind !== "answer" || votes.has(box)) return;
@@ -106,12 +106,12 @@
   };
 
   // ---- what is shown ----
-  // Where it stands, each figure fills what the words leave: beside or below, whichever makes the drawing larger.
+  // Each figure fills the space that the words leave: beside or below, whichever makes the drawing larger.
   const GAP = 16;
   const PANEL = 19; // the width of a figure's controls and numbers, in the type of the lecture
   const SIZES = [1, 0.9, 0.8, 0.7, 0.6, 0.5];
   const LARGE = [1.8, 1.6, 1.4, 1.2, ...SIZES];
-  // The shape of a drawing, and what stands beside it within its figure.
+  // The aspect ratio of a drawing, and the width of the controls beside it within its figure.
   const shapeOf = (figure) => {
     const drawing = figure.querySelector("svg.sheet") ?? figure.querySelector("svg[viewBox], img");
     const panel = figure.querySelector(".moving") ? PANEL * parseFloat(getComputedStyle(root).fontSize) : 0;
@@ -139,7 +139,7 @@
     const foot = parseFloat(getComputedStyle(article).paddingBottom);
     const [wide, high] = [article.clientWidth - 2 * GAP, article.clientHeight - GAP - foot];
     const area = (width, height) => Math.min(height, Math.max(0, width - panel) / shape) ** 2 * shape;
-    // Words may be smaller or stand in a narrower column for the sake of the drawing, but not by much.
+    // Words may be smaller or in a narrower column for the sake of the drawing, but not by much.
     const worth = ({ width, height, size, tall }) => area(width, height) * size ** 0.8 * (tall ? 0.75 : 1);
     const layouts = [];
     article.dataset.words = "below";
@@ -171,7 +171,7 @@
     }
     dispatchEvent(new Event("resize"));
   };
-  // The page is scrolled past a stop as a reader would, so that its figure goes through what the stop shows.
+  // Scroll the page past a stop as a reader would, so that its figure goes through what the stop shows.
   const GLIDE = 5000;
   let gliding = 0;
   const glide = (stop) => {
@@ -199,7 +199,7 @@
     clear();
     for (const block of step.blocks) {
       block.classList.add("in-step");
-      // The speaker decides when it is seen: what a prediction covers on the page is not covered here.
+      // The speaker decides when to show it, so what a prediction covers on the page is not covered here.
       for (let box = block.parentElement; box && box !== article; box = box.parentElement) {
         box.classList.add("around-step");
         if (box.inert) {
@@ -242,7 +242,7 @@
   const openSpeaker = () => {
     if (speaker && !speaker.closed) return speaker.focus();
     speaker = open("", "lecture-speaker", "popup,width=760,height=560");
-    if (!speaker) return (notes.hidden = false); // no second window is allowed: the notes come below the step
+    if (!speaker) return (notes.hidden = false); // no second window is allowed: the notes are shown below the step
     const page = speaker.document;
     page.title = `Notes: ${document.title}`;
     page.documentElement.dataset.theme = root.dataset.theme ?? "light";
@@ -261,7 +261,7 @@
   };
   let ticking;
 
-  // ---- outline, with everything that the keys do, for whoever has none ----
+  // ---- outline, with every action of the keys for those who have no keyboard ----
   const KEYS = [
     ["\u2192 \u2193 Space PageDown", "the next step", () => show(now + 1)],
     ["\u2190 \u2191 PageUp", "the step before", () => show(now - 1)],
@@ -323,11 +323,11 @@
   black.addEventListener("click", () => (black.hidden = true));
 
   const begin = () => {
-    root.classList.remove("in-parts"); // steps are measured
+    root.classList.remove("in-parts"); // because the steps are measured
     place = scrollY;
     began = Date.now();
     ticking = setInterval(tick, 1000);
-    // Begin with what the reader was looking at.
+    // Start at what the reader was looking at.
     const at = steps.findIndex(({ blocks, stop }) => [stop ?? blocks].flat().some((block) => block.getBoundingClientRect().bottom > 80));
     root.classList.add("lecture");
     root.classList.toggle("in-steps", !stops.length);
@@ -357,14 +357,14 @@
   const toggle = () => (root.classList.contains("lecture") ? end() : begin());
   button.addEventListener("click", toggle);
 
-  // ---- keys, clicks and fingers ----
+  // ---- keys, clicks and touches ----
   const TYPING = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable], .cm-editor";
   const MOVED = "[role=slider], [role=radiogroup], input, .sheet, canvas, button.number";
   function keys(event) {
     if (event.altKey || event.ctrlKey || event.metaKey || event.target.closest?.(`${TYPING}, dialog`)) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     if (!root.classList.contains("lecture")) return;
-    const remote = key === "PageDown" || key === "PageUp"; // a speaker's remote: it steps wherever the focus is
+    const remote = key === "PageDown" || key === "PageUp"; // a remote control works wherever the focus is
     if (!remote && event.target.closest?.(MOVED) && !/^[a-z?.]$/.test(key)) return;
     if (!remote && (key === " " || key === "Enter") && !typed && event.target.closest?.("button, summary, a")) return;
     const go = { ArrowRight: 1, ArrowDown: 1, PageDown: 1, " ": 1, ArrowLeft: -1, ArrowUp: -1, PageUp: -1, Home: -steps.length, End: steps.length }[key];
@@ -389,7 +389,7 @@
     if (!digit) typed = "";
   }
   document.addEventListener("keydown", keys);
-  // What was pressed with a pointer does not keep the keys: the next space bar is the next step.
+  // A control that was clicked does not keep the focus: the next space bar goes to the next step.
   document.addEventListener("pointerup", () => {
     if (!root.classList.contains("lecture")) return;
     setTimeout(() => {

@@ -1,13 +1,13 @@
-// Fills in the table of My progress, and lets the reader take the record away, bring it back and clear it.
+// Fill in the table of My progress, and let the reader export the record, import it and delete it.
 {
   const table = document.querySelector("table.my-progress");
-  const gone = document.createElement("p"); // of what was answered in an edition that asked more
+  const gone = document.createElement("p"); // about answers to an edition that asked more
   const record = (page) => progress.all()[page] ?? { read: [], done: [], checked: [], answers: {} };
   const fill = () => {
     let older = 0;
     for (const row of table.tBodies[0].rows) {
       const { read, done, checked, answers } = record(row.dataset.page);
-      // What was right with other numbers than the reader's is not counted; it stays known.
+      // Answers that were right with numbers other than the reader's do not count, but stay in the record.
       const mine = [...checked, ...record(row.dataset.companion).checked].filter((name) => bookStore.standing(name)?.whose === undefined);
       const all = { read, done, checked: mine, predictions: Object.keys(answers), recap: Object.keys(answers) };
       for (const cell of row.querySelectorAll("td")) {

@@ -1,10 +1,10 @@
-// What a link to an equation, a figure, a term or a source leads to is shown beside it: under the pointer, or when the
-// keyboard comes to it. Escape, and leaving both, take it away; a touch follows the link, as ever. What stands on another
-// page is fetched when it is first asked for (see previews.py).
+// Show the target of a link to an equation, a figure, a term or a source beside the link, when the pointer or the
+// keyboard focus is on it. Escape, or leaving both, closes the preview; a touch follows the link as usual. Targets on
+// another page are fetched when first needed (see previews.py).
 {
   const LINKS = ["#equation-", "#fig", "#term-", "bibliography.html#id"].map((part) => `.bd-article a.internal[href*="${part}"]`).join();
   const root = new URL(document.documentElement.dataset.content_root || "./", location.href);
-  const [SOON, LATER] = [300, 250]; // milliseconds until it is shown, and until it goes
+  const [SOON, LATER] = [300, 250]; // milliseconds until it is shown, and until it closes
   const article = document.querySelector(".bd-article");
   let wanted, shown, timer;
 
@@ -12,11 +12,11 @@
   const places = (page) => coming[page] ??= new Promise((resolve) => {
     const script = Object.assign(document.createElement("script"), { src: new URL(`_static/previews/${page.replaceAll("/", "-")}.js`, root) });
     script.onload = () => resolve(self.previews[page]);
-    script.onerror = () => (delete coming[page], resolve({})); // it may come when the network does
+    script.onerror = () => (delete coming[page], resolve({})); // try again later, as the network may return
     document.head.append(script);
   });
 
-  // A copy of a place of this page, without names and links of its own.
+  // A copy of a place on this page, without its names and links.
   const copied = (place) => {
     const box = document.createElement("div");
     if (place.matches("dt")) {
@@ -49,7 +49,7 @@
     return found ? Object.assign(document.createElement("div"), { innerHTML: found }) : null;
   };
 
-  // Constants: a function declared here would take the place of the window's own.
+  // Constants, because function declarations here would replace those of the window.
   const close = () => {
     clearTimeout(timer);
     wanted = null;

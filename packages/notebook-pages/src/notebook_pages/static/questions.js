@@ -8,7 +8,7 @@
   const ANY_OTHER = "anything else";
   const replies = (box) => [...box.querySelectorAll(".replies li[data-name]")];
 
-  // Each way of answering: the control, the name of the reply to what is answered, and how to show an answer again.
+  // Each way of answering has a control, the name of the reply to an answer, and a function to show an answer again.
   const choosing = (box) => {
     const list = box.querySelector(".choices");
     list.setAttribute("role", "radiogroup");
@@ -40,7 +40,7 @@
     };
     return replies(box).map((item) => item.dataset.name).find((name) => name !== ANY_OTHER && away(name) <= tolerance) ?? ANY_OTHER;
   };
-  // A number as one writes it: "0,5", "1/2", "45°", "45 degrees". A unit says nothing new where the question names it, too.
+  // Read a number as people write it: "0,5", "1/2", "45°", "45 degrees". A unit has to be one that the question names.
   const DEGREES = /^(°|deg\b|degrees?\b)/i;
   const numberIn = (text, asked) => {
     const match = /^([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(?:\s*\/\s*(\d+\.?\d*))?\s*(\D*)$/i.exec(text.trim().replace(",", ".").replace("\u2212", "-"));
@@ -60,7 +60,7 @@
       hint: "First type a number in the unit that the question gives, such as 0.5, 1/2 or 45°.",
     };
   };
-  // An arrow to be dragged round a circle, from the x axis on the right towards the y axis, or turned by arrow keys.
+  // An arrow to drag around a circle, from the x axis on the right towards the y axis, or to turn by the arrow keys.
   const STEP = 5;
   const drawing = (box) => {
     const figure = make("div", { className: "dial" });
@@ -109,7 +109,7 @@
     };
   };
 
-  // What comes after a prediction and would give it away is covered until the reader has committed.
+  // Cover what follows a prediction and would give it away, until the reader has committed to an answer.
   const cover = (box) => {
     const covered = make("div", { className: "covered", inert: true });
     const next = [];
@@ -120,7 +120,7 @@
     return covered;
   };
 
-  const openers = [];   // of the predictions, for those who want them all open or none
+  const openers = [];   // of the predictions, to open all of them or none
   for (const box of document.querySelectorAll(".question")) {
     const way = { answer: choosing, number: typing, angle: drawing }[box.dataset.kind](box);
     const fold = box.querySelector(".replies");
@@ -179,7 +179,7 @@
       way.show(before.last);
       show(before.last);
     }
-    // Whoever comes by a link to a place that is covered sees it.
+    // A link to a place that is covered uncovers it.
     const arrive = () => {
       const place = location.hash && document.getElementById(location.hash.slice(1));
       if (!place || !covered?.inert || !covered.contains(place)) return;
@@ -197,7 +197,7 @@
     if (box.classList.contains("predict")) openers.push({ open, uncover });
   }
 
-  // Whoever wants the predictions of the book all open, or none of them, says so once.
+  // The reader can choose once to open all predictions of the book, or to leave them out.
   const first = document.querySelector(".question.predict");
   if (first) {
     const ways = [["asked", "asked as they come"], ["open", "all open"], ["none", "left out"]];
@@ -206,7 +206,7 @@
     const apply = (chosen) => {
       document.documentElement.dataset.predictions = chosen;
       choice.value = chosen;
-      // In the space above the first of them, where it moves no line; without them it stands by itself.
+      // In the space above the first prediction, where it moves no line; without predictions it is a line of its own.
       if (chosen === "none") first.before(line);
       else first.prepend(line);
       if (chosen === "open") for (const { open } of openers) open();
@@ -220,7 +220,7 @@
     apply(ways.some(([value]) => value === chosen) ? chosen : "asked");
   }
 
-  // How the recap went, in one line.
+  // The result of the recap, in one line.
   for (const recap of document.querySelectorAll(".recap")) {
     const line = make("p", { className: "score" });
     recap.append(line);

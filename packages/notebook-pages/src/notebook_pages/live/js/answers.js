@@ -1,12 +1,11 @@
-// What the reader writes in the cells of a page, as the store keeps it: a text that gives way to another one is set
-// aside, not lost.
+// The reader's code in the cells of a page, as the store keeps it: a text that is replaced is set aside, not lost.
 
 import { fingerprint, plainName, Store } from "./store.js";
 
 export const SITE = new URL("../../", import.meta.url).pathname;
 export const store = new Store(SITE);
 
-// Names that cells keep when others come or go: the name that a grader knows, or else one made of the code.
+// Names that cells keep when other cells are added or removed: the name that a grader uses, or else a hash of the code.
 export function nameCells(cells) {
   const seen = {};
   return cells.map(({ name, original }) => {
@@ -17,7 +16,7 @@ export function nameCells(cells) {
   });
 }
 
-// What coursework keeps beside a notebook, for all pages: who works here, and how far. {text, at} by the file's name.
+// What coursework stores beside a notebook, for all pages: who works here, and the progress. {text, at} by file name.
 const TRIES = "progress.json";
 export const coursework = {
   read: (name) => (name === TRIES ? store.tries() : store.read(`coursework ${name}`)),
@@ -38,13 +37,13 @@ export class Answers {
     return new Map(store.entries(this.answer));
   }
 
-  // {code, number, original, at}: the text, the cell's place, the fingerprint of the book's code, milliseconds.
+  // {code, number, original, at}: the text, the cell's number, the fingerprint of the book's code, and milliseconds.
   read(name) {
     return store.read(this.answer + name);
   }
 
-  // Keep a text; ``known`` is the one that it takes the place of. Another one that stands there comes from elsewhere,
-  // and where there is no room to set it aside, it stays. Returns whether the browser has kept the new one.
+  // Keep a text; ``known`` is the one that it replaces. Any other existing text comes from elsewhere, and stays where
+  // there is no room to set it aside. Returns whether the browser has stored the new one.
   write(name, entry, known) {
     const key = this.answer + name, there = store.kept(key);
     if (there && there.code !== known && there.code !== entry.code && !this.setAside(name, there.code, there.at)) {
@@ -58,14 +57,14 @@ export class Answers {
     return key === this.answer + name;
   }
 
-  // Tabs hear of each other a moment late. What another one wrote at the moment in which this one wrote ``own``, over
-  // which it did not know to write, is set aside.
+  // Tabs hear of each other with a delay. Set aside what another tab wrote while this one wrote ``own`` without knowing
+  // of it.
   overtake(name, value, own) {
     const theirs = value && JSON.parse(value);
     if (theirs && theirs.code !== own && this.read(name)?.code === own) this.setAside(name, theirs.code, theirs.at);
   }
 
-  // The text makes room before it is set aside, which takes a little less.
+  // Remove the text before it is set aside, because this makes the room for it.
   remove(name) {
     const there = this.read(name);
     store.drop(this.answer + name);
@@ -76,14 +75,14 @@ export class Answers {
     return store.put(`${this.aside}${name} ${fingerprint(code)}`, { code, at });
   }
 
-  // The texts that this cell has held, the newest first, without those in ``shown``.
+  // Earlier texts of this cell, the newest first, without those in ``shown``.
   earlier(name, ...shown) {
     return store.entries(`${this.aside}${name} `).map(([, entry]) => entry)
       .filter(({ code }) => !shown.includes(code)).sort((earlier, later) => later.at - earlier.at);
   }
 
-  // What a question gives its reader, whose numbers are nobody else's, by the cell's name: {student, text, original,
-  // variants}. What an edition with other variants has given is not shown again.
+  // Keep what a question gives a reader with numbers of their own, by the cell's name: {student, text, original,
+  // variants}. It is not shown again in an edition with other variants.
   keepGiven(name, entry) {
     store.put(this.given + name, entry);
   }

@@ -1,4 +1,4 @@
-// One cell of the page: its editor, its buttons, and what stands below it.
+// One cell of the page: its editor, its buttons, and the output below it.
 import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
 import { python } from "@codemirror/lang-python";
 import { bracketMatching, indentOnInput, indentUnit, syntaxHighlighting } from "@codemirror/language";
@@ -8,8 +8,8 @@ import { classHighlighter } from "@lezer/highlight";
 import { element, goOn, preformatted, shown, wake } from "./output.js";
 
 export class Cell {
-  // ``box`` is the cell's element, ``number`` counts from 1, ``kind`` is what the build found out about it; ``id``,
-  // which the page gives, is the name under which its text is kept.
+  // ``box`` is the cell's element, ``number`` starts at 1, and ``kind`` is what the build found out about the cell. The
+  // page sets ``id``, the name under which its text is kept.
   constructor(box, number, kind, page) {
     Object.assign(this, { box, number, kind, page, name: `cell ${number}`, ran: false });
     this.input = box.querySelector(".cell_input");
@@ -19,7 +19,7 @@ export class Cell {
     this.box.addEventListener("sibling", ({ detail }) => this.takeSibling(detail));
   }
 
-  // A figure keeps its caption: only what stands before it is a result.
+  // Find the output; a figure keeps its caption, so only what precedes the caption is a result.
   findOutput() {
     let output = this.box.querySelector(":scope > .cell_output");
     if (!output) {
@@ -27,11 +27,11 @@ export class Cell {
       this.box.append(output);
     }
     this.output = output.querySelector(":scope > figure:has(> figcaption)") ?? output;
-    // What the page says over it is no result (see page.js).
+    // The line above it about the reader's record is not a result (see page.js).
     this.built = [...this.output.children].filter((child) => !child.matches("figcaption, .live-known"))
       .flatMap((child) => (child.matches(".live-others") ? [...child.children].slice(1) : [child]));
     this.current = this.built;
-    this.made = this.original; // the code that has given what stands there
+    this.made = this.original; // the code whose result is shown
   }
 
   get code() {
@@ -60,7 +60,7 @@ export class Cell {
             { key: "Shift-Enter", run }, { key: "Mod-Enter", run }, { key: "Escape", run: leave },
           ])),
           keymap.of([...defaultKeymap, ...historyKeymap, indentWithTab]),
-          // Whoever comes with Tab goes on with Tab; it indents as soon as another key, or the pointer, is used here.
+          // After arriving with Tab, Tab moves on; it indents as soon as another key, or the pointer, is used here.
           EditorView.domEventHandlers({
             focus: (event, editor) => editor.setTabFocusMode(true),
             keydown: ({ key }, editor) => { if (!/Tab|Shift/.test(key)) editor.setTabFocusMode(false); },
@@ -99,8 +99,8 @@ export class Cell {
     this.showEarlier();
   }
 
-  // A reply offers the same question with other numbers: what shows and checks them is written below the check, so that
-  // the cell does all of it, here and in the notebook. The answer before it stays.
+  // Add the same question with other numbers, as offered by a reply: the code that shows and checks it goes to the end
+  // of the cell, so that the cell does all of it, here and in the notebook. The answer above it stays.
   takeSibling(name) {
     const answer = `other_${name.split("/")[1].replace(/\W/g, "_")}${name.match(/\d*$/)[0]}`;
     if (!this.code.includes(`check('${name}'`)) {
@@ -111,7 +111,7 @@ export class Cell {
     this.page.run(this);
   }
 
-  // Another tab, or the notebook, holds this text now. It may not have known what was written here a moment before.
+  // Take over a text from another tab, or the notebook, which may not have known what was just written here.
   follow(code) {
     this.known = code;
     if (this.own !== undefined && this.own !== code) {
@@ -124,7 +124,7 @@ export class Cell {
     this.following = false;
   }
 
-  // Texts that stood here before, to be brought back.
+  // Show the earlier texts of this cell, to restore one of them.
   showEarlier() {
     const texts = this.page.answers.earlier(this.id, this.code, this.original);
     this.earlier?.remove();
@@ -163,14 +163,14 @@ export class Cell {
     this.ran = this.stopped = false;
   }
 
-  // The text of a question as its reader has it, from an earlier visit, in place of everybody's.
+  // Show the text of a question as this reader got it in an earlier visit, in place of the default one.
   showGiven(student, text) {
     this.box.dataset.whose = student;
     this.replace([shown({ "text/markdown": text }, this.name, () => null)[0]]);
   }
 
   begin() {
-    this.sent = this.code; // the reader may go on writing meanwhile
+    this.sent = this.code; // the reader may edit it meanwhile
     this.stopped = false;
     this.fresh = [];
     this.words = [];
@@ -179,7 +179,7 @@ export class Cell {
     this.box.classList.add("running");
   }
 
-  // One message of the running cell.
+  // Process one message of the running cell.
   take(message) {
     const last = this.fresh.at(-1);
     if (message.type === "clear") {
@@ -200,11 +200,11 @@ export class Cell {
       this.fresh.push(box);
       this.words.push(words);
     }
-    if (message.type === "stream") this.replace([...this.fresh]); // what is printed is seen at once
+    if (message.type === "stream") this.replace([...this.fresh]); // printed text is shown at once
   }
 
-  // What the observers of this cell's figure put out, at any time after its run: it takes the place of what they put
-  // out before, when the figure was somewhere else.
+  // Show what the observers of this cell's figure output, at any time after the run: it replaces their earlier output,
+  // which belongs to another position of the figure.
   observed(message) {
     if (message.type === "clear") {
       this.outdated = true;
@@ -227,27 +227,27 @@ export class Cell {
     this.heard.append(box);
   }
 
-  // What the book's code gives, beside a note: folded where the code above it is another one.
+  // The result of the book's code, beside a note: folded if the code above it was edited.
   get bookResult() {
     if (this.built.every((output) => output.hidden)) return [];
     if (!this.edited) return [element("p", "live-built", "The book’s result:"), ...this.built];
     return [element("details", "live-built", element("summary", "", "The result of the book’s code"), ...this.built)];
   }
 
-  // The cell was not run: what the book has printed stays, and ``note`` says why.
+  // The cell was not run: the book's result stays, and ``note`` says why.
   leave(note) {
     this.box.classList.remove("running", "waiting");
     this.replace(this.edited ? [note, ...this.bookResult] : [...this.built, note]);
     this.ran = false;
   }
 
-  // Whoever has just run the cell, and still looks at it, sees what stands below it: the bar does not lie over it.
+  // Scroll to the output if the cell that was just run is in view, so that the bar does not cover it.
   showReply() {
     const { top, bottom } = this.input.getBoundingClientRect();
     if (bottom > 0 && top < innerHeight) this.output.scrollIntoView({ block: "nearest" });
   }
 
-  // The cell has run; ``note`` is a box with what went wrong. The book's own result stays beside that.
+  // The cell has run; ``note`` is a box with what went wrong, if anything, beside which the book's own result stays.
   end(note) {
     this.box.classList.remove("running", "waiting");
     this.box.classList.toggle("failed", Boolean(note));

@@ -1,11 +1,11 @@
-// The editions of the book that this browser keeps, whole or not at all: for the service worker, and for the page's menu.
-// A file lies under its path and its content, so that no edition puts anything in the place of another's; an edition is a
-// list of such files, and the one entry that names the newest is written when all of them are there. What the edition
-// before it had stays for the tabs that still show it. The list names the version of the store.
+// The editions of the book that this browser stores, completely or not at all: for the service worker, and for the
+// page's menu. A file is stored under its path and its content, so that no edition overwrites a file of another. An
+// edition is a list of such files, and the one entry that names the newest is written when all of them are there. The
+// files of the edition before stay for open tabs that still show it. The list has the version of the store.
 import { cacheOf, NEWER, VERSION } from "./store.js";
 
-const SILENCE = 20_000; // milliseconds without a byte, after which a file is given up
-const AT_ONCE = 6; // files that are fetched side by side
+const SILENCE = 20_000; // milliseconds without data, after which a download is given up
+const AT_ONCE = 6; // files that are fetched in parallel
 
 export class Editions {
   constructor(site) {
@@ -18,13 +18,13 @@ export class Editions {
     return new URL(this.site + encodeURI(path), location.href).href;
   }
 
-  // Where a file lies: also what it is fetched by, which no cache on the way takes for another edition's.
+  // The address of a file in the cache, and for fetching it, so that no cache returns the file of another edition.
   key(path, print) {
     return `${this.address(path)}?kept=${print}`;
   }
 
-  // {format, edition, parts, files, before}: the newest whole edition, or null. Files are fingerprints by their paths.
-  // What a newer version of the store has kept is an error where it would be changed.
+  // {format, edition, parts, files, before}: the newest complete edition, or null. ``files`` has fingerprints by path.
+  // Throws an error if it is to be changed and a newer version of the store has written it.
   async newest(toChange = false) {
     if (!(await caches.has(this.name))) return null;
     const list = await (await (await caches.open(this.name)).match(this.list))?.json();
@@ -32,7 +32,7 @@ export class Editions {
     return list?.edition && !(list.format > VERSION) ? list : null;
   }
 
-  // The copy of what is asked for by ``url``: of the newest edition, unless it names a version or is of the one before.
+  // The stored file for ``url``: of the newest edition, or of the one before if ``url`` has the version of that one.
   async find(url) {
     const list = await this.newest();
     if (!list) return undefined;
@@ -46,22 +46,22 @@ export class Editions {
     return (await caches.open(this.name)).match(this.key(path, print));
   }
 
-  // What there is to keep: the server's list, in two parts, of [fingerprint, bytes] by path.
+  // The server's list of files to store, in two parts, with [fingerprint, bytes] by path.
   async offered() {
     const answer = await fetch(this.address("offline.json"), { cache: "no-cache", signal: AbortSignal.timeout(SILENCE) });
     if (!answer.ok) throw new Error("this site has no list of the pages to store (offline.json)");
     return answer.json();
   }
 
-  // The files of some parts that would have to be fetched.
+  // The files of some parts that have to be fetched.
   async missing(offer, parts) {
     const files = Object.entries(Object.assign({}, ...parts.map((part) => offer[part])));
     const there = new Set((await caches.has(this.name)) ? (await (await caches.open(this.name)).keys()).map(({ url }) => url) : []);
     return files.filter(([path, [print]]) => !there.has(this.key(path, print)));
   }
 
-  // Fetch what is not there yet, then make it the newest edition. Where this breaks off, nothing has changed but that
-  // less is missing the next time. Two at once would do the same work, so the second one waits. Returns the list.
+  // Fetch the missing files, then make this the newest edition. If this is interrupted, nothing has changed except that
+  // less is missing the next time. Two tabs would do the same work, so the second one waits. Returns the list.
   renew(parts, progress = () => {}) {
     return navigator.locks.request(this.name, async () => {
       const there = await this.newest(true), offer = await this.offered();
@@ -91,7 +91,7 @@ export class Editions {
     });
   }
 
-  // One file, as soon as it is known to be the one that the edition names.
+  // Fetch one file, and return it if it is the one that the edition names.
   async fetch(path, print) {
     const giveUp = new AbortController();
     let clock;

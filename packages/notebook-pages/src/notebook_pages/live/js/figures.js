@@ -1,4 +1,4 @@
-// Figures that the page's Python has made: the page's side of widgets, as far as anywidget's front ends need it.
+// Figures made by the page's Python: the page's side of widgets, as far as anywidget's front ends need it.
 import { element, preformatted } from "./output.js";
 import { Model } from "./model.js";
 
@@ -20,11 +20,11 @@ function dress(text) {
   document.head.append(element("style", "", text));
 }
 
-// The figures among some nodes, each with its model: those of the build, and those of Python.
+// The figures in some nodes, each with its model: those of the build, and those of Python.
 const figuresIn = (nodes) => nodes.flatMap((node) => [node, ...node.querySelectorAll?.("figure.moving") ?? []]).filter(({ model }) => model);
 
 export class Figures {
-  // ``tell(name, data)`` speaks to Python.
+  // ``tell(name, data)`` sends a message to Python.
   constructor(tell) {
     this.tell = tell;
     this.models = new Map();
@@ -42,7 +42,7 @@ export class Figures {
     }
   }
 
-  // The element of a value that is a figure, or nothing.
+  // The element for a value that is a figure, or nothing.
   show(data, cell) {
     const model = this.models.get(data[WIDGET]);
     if (!model) return null;
@@ -60,12 +60,12 @@ export class Figures {
     return box;
   }
 
-  // What the observers of a figure print stands below it, in place of what they printed before.
+  // Show what the observers of a figure print below it, in place of what they printed before.
   observed(name, message) {
     this.cells.get(name)?.observed(message);
   }
 
-  // A figure that the reader has moved stays as it is when its cell runs because another one needs it.
+  // Keep the position of a figure that the reader has moved if its cell runs because another cell needs it.
   keep(before, after) {
     const [old, fresh] = [before, after].map(figuresIn);
     fresh.forEach(({ model }, place) => model.move(old[place]?.model.moved));

@@ -1,4 +1,4 @@
-// The whole book kept in this browser, to be read where there is no network: by choice, and with its size told.
+// Store the whole book in this browser for reading without a network, when the reader asks for it and knows its size.
 import { SITE } from "./answers.js";
 import { Editions } from "./editions.js";
 
@@ -18,7 +18,7 @@ async function take(tools, parts) {
     await navigator.serviceWorker.register(`${SITE}service-worker.js`);
     await editions.renew(parts, tools.progress);
     tools.say("The book is stored in this browser, and its pages open without a network. Some browsers offer to install it as an app.");
-    // Or the browser may make room when it likes. Some ask the reader, who may take their time.
+    // Otherwise the browser may delete it when it needs space. Some browsers ask the reader, which may take time.
     navigator.storage?.persist?.().catch(() => {});
   } catch (error) {
     const full = error.name === "QuotaExceededError";
@@ -27,7 +27,7 @@ async function take(tools, parts) {
   tools.progress(null);
 }
 
-// What the menu's entry does: tell the sizes, and ask.
+// The action of the menu's entry: show the sizes, and ask.
 export async function keep(tools) {
   const reason = hindrance();
   if (reason) return tools.say(reason);
@@ -35,7 +35,7 @@ export async function keep(tools) {
   try {
     there = await editions.newest(true);
   } catch (error) {
-    return tools.say(error.message); // a newer edition's: it is left alone
+    return tools.say(error.message); // stored by a newer edition: it is left alone
   }
   try {
     offer = await editions.offered();
@@ -62,7 +62,7 @@ export async function keep(tools) {
       : "Store the book in this browser, to read it without a network? The browser then downloads whatever changes in the pages.", actions);
 }
 
-// The sections of a page by their headings, without the sections within them.
+// The sections of a page by their headings, without their subsections.
 function sections(text) {
   const page = new DOMParser().parseFromString(text, "text/html");
   page.querySelectorAll(".headerlink, .katex math").forEach((part) => part.remove());
@@ -73,7 +73,7 @@ function sections(text) {
   }));
 }
 
-// A newer edition has come while this page was open: say so, and what is different on it.
+// A newer edition was stored while this page was open: say so, and what has changed on the page.
 export async function tellOfRenewal(tools) {
   const list = await editions.newest();
   const page = decodeURI(location.pathname.slice(SITE.length)).replace(/(^|\/)$/, "$1index.html");

@@ -1,4 +1,4 @@
-// Loaded when the reader first asks for code to run: the page's cells, the bar below, and the order of runs.
+// Loaded when the reader first asks to run code: the page's cells, the bar below, and the order of runs.
 import { Cell } from "./cell.js";
 import { Answers, coursework, nameCells, store } from "./answers.js";
 import { named } from "./names.js";
@@ -33,14 +33,14 @@ class Page {
     this.show();
   }
 
-  // The editors are made while Python is being loaded, which takes longer.
+  // Create the editors while Python is being loaded, which takes longer.
   edit() {
     for (const cell of this.cells) cell.edit();
     this.askWho();
   }
 
-  // Somebody goes to the code of a cell: the cursor stands where they pointed, or at the end. ``field`` has taken what
-  // was written before there was an editor (see page.js).
+  // Open the editor of a cell, with the cursor at the point that was clicked, or at the end. ``field`` contains what
+  // was typed before the editor existed (see page.js).
   write(cell, point, field) {
     const stays = document.activeElement === field;
     cell.edit();
@@ -53,7 +53,7 @@ class Page {
     if (field.readOnly) this.run(cell);
   }
 
-  // Where a page's questions have variants, it asks once who works here; all pages, and Python, know it then.
+  // If the questions of the page have variants, ask once for the reader's ID; then all pages, and Python, know it.
   askWho() {
     const cell = this.cells.find(({ original }) => /^student\(/m.test(original));
     if (!cell || this.who?.contains(document.activeElement)) return;
@@ -77,7 +77,7 @@ class Page {
     this.who = form;
   }
 
-  // The numbers of a question that were a reader's own are there again when the page is opened the next time.
+  // Keep the text of a question with the reader's own numbers, to show it when the page is opened the next time.
   keepGiven(cell) {
     const { student } = store;
     if (student && cell.given !== undefined && SHOWS.test(cell.original)) {
@@ -85,7 +85,7 @@ class Page {
     }
   }
 
-  // Whoever has said anew who they are sees neither another one's numbers nor a reply to them as their own.
+  // After a change of the ID, show neither the numbers of another ID nor replies to them as the reader's own.
   tellWhose() {
     for (const cell of this.cells) {
       cell.ran = false;
@@ -103,7 +103,7 @@ class Page {
     }
   }
 
-  // A reply to what no longer stands above it says so, until its check runs again.
+  // Mark a reply to an answer that has changed, until its check runs again.
   doubt(cell, changed) {
     const check = this.cells.slice(cell.number).find(({ code }) => /\bcheck\(/.test(code));
     check?.output.querySelector(":scope > .live-outdated")?.remove();
@@ -113,7 +113,7 @@ class Page {
 
   // --- the reader's edits ----------------------------------------------------------------------
 
-  // One cell's text has changed here: its entry, and no other, is written.
+  // Store the text of one cell that has changed here, and no other.
   keep(cell) {
     const { id, number, original, code } = cell;
     let kept = true;
@@ -123,7 +123,7 @@ class Page {
       kept = this.answers.remove(id);
     }
     cell.known = code;
-    cell.own = cell.edited ? code : undefined; // until another tab's text takes its place
+    cell.own = cell.edited ? code : undefined; // until it is replaced by the text of another tab
     if (store.isNewer) this.bar.say(`${NEWER} “Take away: with my answers” saves it.`);
     else if (!kept || window.keepsNothing) {
       this.bar.say(`${window.keepsNothing ? "Your browser does not let this page store anything" : "This browser has no room left for your answers"}: what you write lasts until you leave the page. “Take away: with my answers” saves it.`);
@@ -131,7 +131,7 @@ class Page {
     this.show();
   }
 
-  // Put what is kept back where the book's code is still the same; elsewhere ask.
+  // Restore the stored texts where the book's code has not changed; elsewhere ask.
   async bring() {
     this.showGiven();
     await this.lookAtNotebook();
@@ -142,17 +142,17 @@ class Page {
       if (cell?.own !== undefined) this.answers.overtake(cell.id, text, cell.own);
       this.reread();
     });
-    // A tab that slept has missed what others wrote.
+    // A tab in the background may have missed changes by others.
     const wake = async () => document.hidden || (await this.lookAtNotebook(), this.reread());
     document.addEventListener("visibilitychange", wake);
-    // What lasts as long as the page only is not to be closed by a slip.
+    // Ask before closing a page with texts that are not stored elsewhere.
     addEventListener("beforeunload", (event) => {
       if (store.holdsTexts() || (window.keepsNothing && this.cells.some((cell) => cell.edited))) event.preventDefault();
     });
     addEventListener("pageshow", ({ persisted }) => persisted && wake());
   }
 
-  // The page's notebook in JupyterLite, if this browser keeps one, may hold newer answers, and another ID.
+  // The page's notebook in JupyterLite, if this browser has one, may contain newer answers, and another ID.
   async lookAtNotebook() {
     if (!store.read(this.answers.agreed)) return;
     try {
@@ -167,7 +167,7 @@ class Page {
     }
   }
 
-  // Make the cells hold what is kept. Returns how many texts there are.
+  // Make the cells show the stored texts. Returns how many texts there are.
   reread() {
     const kept = this.answers.all();
     const all = kept.size;
@@ -187,8 +187,8 @@ class Page {
     return all;
   }
 
-  // A text for code that has changed is offered where that stands; one for a question that is gone, at the end, and
-  // for no other cell. Names that are made of the code say it themselves (see nameCells).
+  // Offer a text at the code that has changed, and a text for a removed question at the end, where it belongs to no
+  // cell. A name made from the code shows that the code has changed (see nameCells).
   offer(name, entry) {
     const own = this.cells.find(({ id }) => id === name);
     const gone = !own && !name.startsWith(`${entry.original}-`);
@@ -218,7 +218,7 @@ class Page {
     this.offers.set(name, box);
   }
 
-  // One press must not take away the work of an hour.
+  // Ask first, so that one click cannot remove the work of an hour.
   askToUndo() {
     const edited = this.cells.filter((cell) => cell.edited);
     this.bar.ask(`Bring back the book’s code in ${plural(edited.length, "cell")}? What you wrote there is kept below each cell.`, {
@@ -238,27 +238,27 @@ class Page {
 
   // --- what is to run --------------------------------------------------------------------------
 
-  // The picture of such a cell is there already, and nothing else comes of running it.
+  // Whether running the cell would give nothing but a picture that is already there.
   leftOut(cell) {
     return cell.kind.skip && !cell.edited;
   }
 
-  // Whether a cell runs just now, with the code that stands in it, and is not being stopped.
+  // Whether a cell is running with its present code, and is not being stopped.
   atWork(cell) {
     return this.running === cell && cell.sent === cell.code && !this.stopping;
   }
 
-  // Run one cell, and before it what has not run yet; without a cell, the whole page.
+  // Run one cell, after the cells above it that have not run yet; without a cell, run the whole page.
   run(cell) {
     if (!cell && this.cells.every((another) => this.leftOut(another))) {
       return this.bar.say("Every cell of this page draws a picture that is already shown. Run, below a cell, draws it again.");
     }
-    // Asked twice by a quick hand: it is on its way.
+    // Ignore a second click while the cell is running.
     if (cell ? this.atWork(cell) : this.whole) return;
-    if (cell) cell.asked = true; // by its own button: its figure begins anew
+    if (cell) cell.asked = true; // by its own button: its figure starts anew
     else {
       this.whole = true;
-      this.empty(); // every cell comes in its order
+      this.empty(); // every cell is added in its order
     }
     const upTo = cell ? cell.number : this.cells.length;
     const before = this.cells.slice(0, upTo).filter((other) =>
@@ -274,13 +274,13 @@ class Page {
     if (!this.busy) this.work();
   }
 
-  // A cell that takes files, by its tag: Python finds them in the folder ``dropped``, and the cell runs. Nothing is sent.
+  // Ask for files in a cell with this tag. They stay here: Python finds them in the folder ``dropped``, and the cell runs.
   askForFiles(cell) {
     const { box } = cell;
     const field = Object.assign(element("input"), { type: "file", multiple: true });
     box.prepend(element("label", "takes-file", "Choose a file, or drop it here. It stays in this page: ", field));
     field.addEventListener("change", () => this.give(cell, [...field.files]));
-    // A file that misses the cell would open in the place of this page.
+    // Catch a file that misses the cell, as the browser would open it in place of this page.
     const taking = (event) => {
       if (event.defaultPrevented || !event.dataTransfer.types.includes("Files")) return;
       event.preventDefault();
@@ -301,7 +301,7 @@ class Page {
 
   async work() {
     this.busy = true;
-    this.retry = true; // what could not be fetched before is tried again
+    this.retry = true; // downloads that failed are tried again
     this.show();
     try {
       while (this.queue.length) {
@@ -346,7 +346,7 @@ class Page {
     else if (message.type === "observed") this.figures.observed(message.widget, message.message);
   }
 
-  // Coursework has written down who works here, or how far they are.
+  // Coursework has changed the reader's ID or progress.
   keepOf({ name, text, base }) {
     const before = store.student;
     coursework.write(name, text, Date.now(), base);
@@ -359,9 +359,9 @@ class Page {
     this.running = cell;
     cell.begin();
     if (this.queue.length || !this.tally.alone) this.bar.say(`Running ${cell.name} of ${this.cells.length} ...`);
-    // Code that the page hides above this cell; what it puts out belongs to no cell.
+    // Run the hidden code above this cell; its output belongs to no cell.
     const { before } = cell.kind;
-    const show = lacking.length ? { take() {} } : cell; // it cannot run whole, but others use names that it gives before
+    const show = lacking.length ? { take() {} } : cell; // it cannot run to its end, but others use names from before
     const hidden = before ? await this.python.run(before, `the code above ${cell.name}`, needs, { take() {} }, this.retry, coursework.all()) : { status: "ok" };
     const outcome = hidden.status === "ok" ? await this.python.run(cell.sent, cell.name, needs, show, this.retry, coursework.all()) : hidden;
     this.retry = false;
@@ -408,8 +408,8 @@ class Page {
       const then = lost ? " At the next run Python restarts, and the page’s earlier cells run first." : " Everything that earlier cells defined is still there.";
       cell.end(element("div", "live-note", element("p", "", why + then)));
       cell.ran = false;
-      cell.stopped = cell.sent === cell.code; // it runs again when it is asked for, or changed; not because a later cell is
-      // What is in the queue was asked for after Stop: it runs, and where Python starts anew, what stands before it.
+      cell.stopped = cell.sent === cell.code; // it runs again when it is asked for or changed, but not for a later cell
+      // What is in the queue was requested after Stop: run it, and if Python restarts, also the cells above it.
       const [next, whole] = this.stopping ? [this.queue.at(-1), this.whole] : [];
       this.stopping = false;
       if (lost || !next) this.empty();
@@ -447,7 +447,7 @@ class Page {
     if (this.python?.ended) this.forget();
   }
 
-  // Python is gone, and with it every name: the next run begins with the first cell.
+  // Python has ended, and with it every name: the next run starts with the first cell.
   forget() {
     this.python = null;
     for (const cell of this.cells) cell.ran = false;

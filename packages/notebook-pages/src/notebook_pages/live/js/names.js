@@ -1,4 +1,4 @@
-// Packages under the names that people give them.
+// Packages under the names that people use for them.
 const NAMES = { numpy: "NumPy", matplotlib: "Matplotlib", scipy: "SciPy", pygments: "Pygments" };
 
 export const named = (...modules) => modules.map((module) => NAMES[module] ?? module).join(" and ");

@@ -1,4 +1,4 @@
-// Runs before JupyterLite opens a notebook: brings the answers of its page into it, and asks where the book has changed.
+// Runs before JupyterLite opens a notebook: copies the answers of its page into it, and asks if the book has changed.
 import { Answers, SITE, store } from "./answers.js";
 import { agreeOnRecords, bookCells, bringTogether, edition, newFile, placeBeside, readCopy, writeCopy } from "./notebooks.js";
 
@@ -8,7 +8,7 @@ const element = (tag, properties, ...children) => {
   return made;
 };
 
-// Ask before the interface is there. Resolves to the place of the button that was pressed.
+// Ask before the interface is loaded. Resolves to the index of the button that was clicked.
 function ask(title, words, ...choices) {
   return new Promise((resolve) => {
     const buttons = choices.map((choice, place) => element("button", {
@@ -45,10 +45,10 @@ async function open(path) {
   if (went.length || (copy && used !== copy)) {
     await writeCopy(path, { ...used, last_modified: new Date().toISOString() });
   }
-  new Answers(page).agree({}); // the page knows by this that there is something to look after
+  new Answers(page).agree({}); // tells the page that there is a notebook to check
 }
 
-// The book's notebook is no longer the one that the copy was made of. Whatever is chosen, the copy stays.
+// The notebook of the book has changed since the copy was made. Whatever the reader chooses, the copy is kept.
 async function choose(path, copy, book) {
   const written = bookCells(copy.content).filter(({ text, original }) => text && original !== null);
   const name = await placeBeside(path, `my copy of ${copy.last_modified.slice(0, 16).replace(/[T:]/g, "-")}`, copy.content);

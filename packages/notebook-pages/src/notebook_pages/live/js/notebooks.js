@@ -1,4 +1,4 @@
-// The notebooks that JupyterLite keeps in this browser, and how one of them and its page come to hold the same.
+// The notebooks that JupyterLite stores in this browser, and how one of them and its page are made to agree.
 import { Answers, coursework, nameCells, store } from "./answers.js";
 import { fingerprint, joinProgress } from "./store.js";
 
@@ -8,7 +8,7 @@ const settled = (request) => new Promise((resolve, reject) => {
   request.onerror = () => reject(request.error);
 });
 
-// Calls ``use`` with the store of files, made as JupyterLite's own library makes it if there is none.
+// Call ``use`` with the store of files; if it is missing, create it in the same way as JupyterLite's own library.
 async function files(mode, use) {
   const known = (await indexedDB.databases?.() ?? [{ name: store.database }]).some(({ name }) => name === store.database);
   if (!known && mode === "readonly") return undefined;
@@ -35,7 +35,7 @@ export const allCopies = async () => (await files("readonly", async (store) => {
   return keys.map((key, k) => [key, values[k]]);
 })) ?? [];
 
-// Where ``content`` is put beside the file at ``path``, with ``words`` in its name: never in the place of something else.
+// A free path for ``content`` beside the file at ``path``, with ``words`` in its name, so that nothing is overwritten.
 export async function placeBeside(path, words, content) {
   for (let number = 1; ; number += 1) {
     const place = path.replace(/(\.\w+)?$/, ` (${words}${number > 1 ? `, ${number}` : ""})$1`);
@@ -52,8 +52,8 @@ export function newFile(path, content) {
   };
 }
 
-// What coursework keeps beside the notebooks of a folder belongs to all pages and all notebooks: who works here, where the
-// newer of the two counts, and how far they are, question by question.
+// Files of coursework beside the notebooks of a folder belong to all pages and notebooks. Of the student IDs the newer
+// one counts, and the progress is joined question by question.
 export async function agreeOnRecords(page, mayWrite = false) {
   const folder = `${page.split("/").slice(0, -1).join("/")}/.coursework`;
   for (const [name, join] of [["me.txt", (older, newer) => newer], ["progress.json", joinProgress]]) {
@@ -80,7 +80,7 @@ export function bookCells(notebook) {
       cell, name: stamp[cell.id][0], text: text(cell.source), original: stamp[cell.id][1],
     }));
   }
-  // Notebooks from elsewhere have no stamp: the names that graders use tell those cells apart.
+  // Notebooks from elsewhere have no stamp: the names that graders use identify their cells.
   const graded = (cell) => cell.metadata?.nbgrader?.grade_id;
   const names = nameCells(codes.map((cell) => ({ name: graded(cell), original: text(cell.source) })));
   return codes.map((cell, k) => ({ cell, name: names[k], text: text(cell.source), original: null }));
@@ -88,10 +88,10 @@ export function bookCells(notebook) {
 
 export const edition = (notebook) => JSON.stringify(Object.values(notebook.metadata?.book?.cells ?? {}));
 
-// Make the copy and the page hold the same. Of each cell the side that has changed since they last
-// agreed gives its text to the other one; where both have, the newer text stands and the other is set aside.
-// Returns the names of the cells that changed on the page, and in the copy.
-// ``originals``, the book's code by names, is given where the copy may be changed too.
+// Make the copy and the page agree. The text of each cell is taken from the side that has changed since they last
+// agreed; if both have changed, the newer text is used and the other is set aside. Returns the names of the cells that
+// changed on the page, and in the copy. If the copy may be changed too, ``originals`` is the book's code by
+// names.
 export function bringTogether(page, copy, originals) {
   const answers = new Answers(page);
   const agreement = answers.agreement(), agreed = {};

@@ -1,4 +1,4 @@
-// What cells put out, made to look as the build makes it look.
+// The output of cells, formatted in the same way as by the build.
 import katex from "katex";
 
 const ORDER = ["text/html", "image/svg+xml", "image/png", "text/markdown", "text/latex", "text/plain"];
@@ -10,7 +10,7 @@ function element(tag, className, ...children) {
   return made;
 }
 
-// What scrolls can be reached with the keyboard, but only while it does.
+// Make a box that scrolls reachable by keyboard, but only while it overflows.
 const watchLong = new ResizeObserver((entries) => {
   for (const { target } of entries) {
     const { scrollWidth, clientWidth, scrollHeight, clientHeight } = target;
@@ -19,7 +19,7 @@ const watchLong = new ResizeObserver((entries) => {
   }
 });
 
-// Numbers that stand below each other: their lines scroll on a narrow screen, those of sentences go on in the next.
+// Numbers in columns: their lines scroll on a narrow screen, while the lines of sentences wrap.
 const COLUMNS = /^ *\[|^ {4}|\S {2,}\S/m;
 
 function preformatted(kind, text) {
@@ -31,14 +31,14 @@ function preformatted(kind, text) {
   return box;
 }
 
-// What a program prints comes in pieces, and may stand in columns only with the last of them.
+// Printed text comes in pieces, and may turn out to be in columns only with the last of them.
 function goOn(box, text) {
   const words = box.querySelector("pre");
   words.append(text);
   if (box.classList.contains("text_plain") || COLUMNS.test(words.textContent)) words.className = "columns";
 }
 
-// The delimiters come off, and all is set in display style, as the build does it.
+// Remove the delimiters; everything is set in display style, as by the build.
 function bare(tex) {
   for (const [start, end] of [["\\(", "\\)"], ["\\[", "\\]"], ["$$", "$$"], ["$", "$"]]) {
     if (tex.startsWith(start) && tex.endsWith(end)) return tex.slice(start.length, -end.length);
@@ -69,7 +69,7 @@ function picture(form, data, name) {
   return element("div", "output image_svg", image);
 }
 
-// Formulas in the text of such an output are set as a notebook sets them.
+// Set the formulas in the text of such an output as a notebook does.
 function setFormulas(box) {
   const walker = document.createTreeWalker(box, NodeFilter.SHOW_TEXT);
   const texts = [];
@@ -90,7 +90,7 @@ function html(text) {
   const box = element("div", "output text_html");
   box.innerHTML = text;
   setFormulas(box);
-  // Scripts that are set in as text do not run; a copy does, as a file: the page's policy lets no other in.
+  // Scripts that are inserted as text do not run. A copy as a file does: the page's policy allows no others.
   for (const script of box.querySelectorAll("script")) {
     const copy = element("script");
     for (const { name, value } of script.attributes) copy.setAttribute(name, value);
@@ -111,7 +111,7 @@ function html(text) {
   return box;
 }
 
-// What a cell gives as Markdown: paragraphs, lists, tables, and in them code, stress, links and formulas.
+// The Markdown output of a cell: paragraphs, lists and tables, with code, emphasis, links and formulas.
 function markdown(text) {
   const box = element("div", "output text_markdown");
   for (const part of text.split(/\n{2,}/)) {
@@ -155,8 +155,8 @@ function withStress(block, text) {
   return block;
 }
 
-// One value in the best of its forms, and in a few words for those who hear the page. ``figure`` gives the element of
-// a value that is a moving figure.
+// One value in the best of its formats, with a few words for screen readers. ``figure`` returns the element of a value
+// that is a moving figure.
 export function shown(data, name, figure) {
   const moving = figure(data);
   if (moving) return [moving, "a figure"];
@@ -174,7 +174,7 @@ export function shown(data, name, figure) {
   return [preformatted("text_plain", text), text];
 }
 
-// A figure that moves is brought to life by the page's own script for its kind.
+// Start a moving figure with the page's own script for its kind.
 export function wake(root) {
   const kinds = new Set([...root.querySelectorAll(".moving[data-figure]:not([data-ready])")].map((f) => f.dataset.figure));
   for (const kind of kinds) {

@@ -1,12 +1,12 @@
-// On every page with code: the buttons, and a bar for what there is to say. All else is loaded when asked for.
+// On every page with code: the buttons, and a bar for messages. Everything else is loaded when needed.
 {
   const data = JSON.parse(document.getElementById("live-data").textContent);
   const place = new URL("../", document.currentScript.src).pathname;
   const boxes = [...document.querySelectorAll("div.cell")].filter((box) => box.querySelector(".cell_input"));
   const make = (tag, attributes, text = "") => Object.assign(document.createElement(tag), attributes, { textContent: text });
 
-  const store = globalThis.bookStore; // the page's (see progress.js)
-  // What lasts as long as the tab: where the browser has no room, or forbids it, the page is not loaded once more.
+  const store = globalThis.bookStore; // shared with the whole page (see progress.js)
+  // Store a value that lasts as long as the tab. If the browser has no room, or forbids it, the page is not reloaded.
   const note = (key, value) => {
     try {
       sessionStorage.setItem(key, value);
@@ -16,7 +16,7 @@
     }
   };
 
-  // The bar at the foot of the window: it lies over the page, so that no line moves.
+  // The bar at the bottom of the window, which covers part of the page, so that no line moves.
   const bar = make("section", { className: "live-bar", hidden: true });
   bar.setAttribute("aria-label", "Python on this page");
   const words = make("p", { id: "live-words" });
@@ -25,7 +25,7 @@
   const progress = make("progress", { hidden: true });
   progress.setAttribute("aria-label", "Loading Python");
   const bytes = make("span", { className: "live-bytes" });
-  bytes.setAttribute("aria-hidden", "true"); // the words are said once; the numbers change all the time
+  bytes.setAttribute("aria-hidden", "true"); // as the words are spoken once, but the numbers change all the time
   const keys = make("p", { id: "live-keys" }, "Shift+Enter runs a cell, Escape leaves it.");
   const close = make("button", { type: "button", className: "live-close", title: "Close this bar" }, "×");
   close.setAttribute("aria-label", "Close this bar");
@@ -64,7 +64,7 @@
     }),
   };
 
-  // Why this page can run no code and keep nothing, if so: its origin is no place that its own files share.
+  // Why this page cannot run code or store anything, if so: its origin is not shared by its own files.
   const apart = self.origin !== "null" ? "" : location.protocol === "file:"
     ? "A page opened from disk cannot run code. In the folder of the book, run python serve.py and open the address that it prints."
     : "The page around this one blocks its files (its frame has a sandbox without allow-same-origin), so no code runs here. Open this page in its own tab.";
@@ -74,12 +74,12 @@
     tools.say(apart);
   });
 
-  // Only an isolated page shares memory with its Python, which can then be stopped and keeps its names. Where the
-  // server does not isolate the pages, a service worker does, from the moment when the page is loaded once more.
-  const RUN = `book ${place} run`; // in this tab: "tried", or what to run when the page is there again
+  // Only an isolated page shares memory with its Python, which can then be stopped and keeps its names. If the server
+  // does not isolate the pages, a service worker does, after the page is reloaded once.
+  const RUN = `book ${place} run`; // in this tab: "tried", or what to run after the reload
   const isolate = async (number) => {
     const able = isSecureContext && "serviceWorker" in navigator && self === top && !window.keepsNothing;
-    // What the browser had no room for would be gone.
+    // Texts that the browser had no room for would be lost.
     if (crossOriginIsolated || !able || sessionStorage.getItem(RUN) || store.holdsTexts()) return false;
     if (!note(RUN, "tried")) return false;
     try {
@@ -96,7 +96,7 @@
   };
 
   let page;
-  // A browser remembers a script that has not come as long as the page is open: it is asked for by another name then.
+  // A browser remembers a failed script as long as the page is open, so it is then requested by another name.
   let tries = 0;
   const script = async (name) => {
     try {
@@ -106,8 +106,8 @@
       throw Object.assign(error, { isLost: true });
     }
   };
-  // What has not worked, and where a script has not come, why: a page that was open while others took its place asks for
-  // what is no longer there.
+  // Explain an error. A script is missing if the page was open while its files were replaced by those of a newer
+  // edition.
   tools.explain = async (error, what = "That did not work") => {
     if (!error.isLost) return tools.say(`${what}: ${error.message}.`);
     const now = await fetch(location.pathname, { cache: "no-cache", signal: AbortSignal.timeout(5000) }).then((answer) => answer.ok && answer.text(), () => "");
@@ -116,12 +116,12 @@
         "Reload": () => location.reload(),
       });
     }
-    // A page that is kept in the browser answers without a network.
+    // A page that is stored in the browser answers without a network.
     if (!now || !navigator.onLine) return tools.say(`${what}: ${now ? "this browser keeps the pages without Python, and there is no network" : "the server of these pages does not answer"}. Try again when you have a network.`);
     tools.say(`${what}: ${error.message}.`);
   };
   const open = () => (page ??= script("live.js").then(({ open }) => open({ data, boxes, bar: tools })));
-  const awaited = new Map(); // the cells that somebody writes in before their editors have come
+  const awaited = new Map(); // the cells in which the reader types before their editors are there
   const ask = async (number) => {
     if (apart) return tools.say(apart);
     await Promise.all(awaited.values());
@@ -141,8 +141,8 @@
     run.dataset.label = `Run cell ${number + 1}`;
     box.querySelector(".cell_input").append(run);
   });
-  // Code is written where it stands: the editor comes when somebody goes there, and where answers are asked for, before.
-  // Python waits for the first run. Until the editor is there, a field of the page takes what is typed, pasted, dictated or composed by an input method.
+  // Code is edited in its place. Its editor is loaded when the reader goes there, or at once if answers are asked for.
+  // Python waits for the first run. Until the editor is there, a text field takes the input, also from an input method.
   const makeField = (number) => {
     const code = boxes[number].querySelector(".cell_input > div");
     const ariaLabel = `Code of cell ${number + 1}`;
@@ -157,9 +157,9 @@
       event.preventDefault();
       field.readOnly = true; // what is typed after this would run as well
     });
-    // The editor is asked for again where it could not be fetched.
+    // Try again to load the editor if it could not be fetched.
     field.onfocus = field.onclick = () => write(number);
-    code.tabIndex = -1; // or Shift+Tab would lead from the field into it again
+    code.tabIndex = -1; // or Shift+Tab would return from the field to it
     code.after(field);
     return field;
   };
@@ -189,7 +189,7 @@
     code.setAttribute("aria-label", `Code of cell ${number + 1}`);
     code.addEventListener("focus", () => code.matches(":focus-visible") && write(number));
     code.addEventListener("click", ({ target, x, y }) => {
-      // Who has selected some of it is about to copy it.
+      // A reader who has selected part of the code is about to copy it.
       if (!target.closest("button") && getSelection().isCollapsed) write(number, { x, y });
     });
     code.addEventListener("dragenter", ({ dataTransfer, x, y }) => dataTransfer.types.includes("text/plain") && write(number, { x, y }));
@@ -197,7 +197,7 @@
   const answers = [...boxes.keys()].filter((number) => data.cells[number]?.name);
   if (answers.length && !apart) addEventListener("load", () => setTimeout(() =>
     open().then(({ cells }) => answers.forEach((number) => cells[number].edit()), () => (page = undefined))));
-  // A cell that takes files can be given one as soon as it is nearly in sight.
+  // A cell that takes files is prepared for them as soon as it is nearly in view.
   const near = new IntersectionObserver((entries) => {
     if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
     near.disconnect();
@@ -207,11 +207,11 @@
   const runPage = document.querySelector("button.run-page");
   runPage.addEventListener("click", () => ask(-1));
 
-  // What Python weighs is told before it is fetched; once it has come, the browser has it.
+  // Show the size of Python before it is fetched; afterwards the browser has it.
   function tellSize() {
     const told = store.read("setting fetched") === data.pyodide ? "" : `${Math.round(data.bytes / 1e6)} MB`;
     for (const run of [runPage, ...document.querySelectorAll("button.run-cell")]) {
-      if (told && run === runPage) run.dataset.size = told;   // once a page
+      if (told && run === runPage) run.dataset.size = told;   // only once per page
       else delete run.dataset.size;
       run.setAttribute("aria-label", `${run.dataset.label}${told && `, which first fetches ${told}`}`);
     }
@@ -219,7 +219,7 @@
   runPage.dataset.label = "Run this page";
   tellSize();
 
-  // The book, kept for reading without a network.
+  // Store the book for reading without a network.
   document.querySelector("button.keep-book").addEventListener("click", async () => {
     document.querySelector("details.take-away").open = false;
     if (apart) return tools.say(location.protocol === "file:" ? "This copy of the book is on your disk: it needs no network." : apart);
@@ -230,7 +230,7 @@
     }
   });
 
-  // Take away and bring back: the page's answers as a notebook, all answers of the book as one file.
+  // Take away and bring back: the page's answers as a notebook, and all answers of the book as one file.
   const originals = boxes.map((box) => box.querySelector(".cell_input pre").textContent.trimEnd());
   for (const choice of document.querySelectorAll("button[data-answers]")) {
     choice.addEventListener("click", async () => {
@@ -245,8 +245,8 @@
     });
   }
 
-  // What stands below a cell may be nobody's, as the page was built, or another one's: what coursework knows of this
-  // reader is said over it, and it is folded. A cell that has run for this reader (see live.js) speaks for itself.
+  // The output below a cell may be the default one, as the page was built, or of another ID: fold it, and show above it
+  // what coursework knows of this reader. A cell that has run for this reader (see live.js) needs no such line.
   const named = (call) => originals.map((code) => new RegExp(`\\b${call}\\(\\s*["']([^"']+)["']`).exec(code)?.[1]);
   const shown = named("variant"), checked = named("check");
   tools.tellWhatIsKnown = () => {
@@ -270,7 +270,7 @@
       else said = `You have tried this one before. ${run}`;
       if (!said) return;
       output.querySelector('.coursework-reply[data-outcome="not attempted"]')?.remove();
-      if (shown[number] || whose !== undefined) { // what is another one's is not taken for one's own
+      if (shown[number] || whose !== undefined) { // so that results of another ID do not seem to be those of the reader
         const others = make("details", { className: "live-built live-others" });
         others.append(make("summary", {}, shown[number] ? "The default numbers" : "The reply to other numbers"), ...output.childNodes);
         output.append(others);
@@ -280,17 +280,17 @@
   };
   tools.tellWhatIsKnown();
 
-  // What the reader has written here before comes back, also from another tab; see store.js for the keys.
+  // Restore what the reader has written here before, also in another tab; see store.js for the keys.
   const own = [`answer ${data.page} `, `earlier ${data.page} `, `agreed ${data.page}`, `given ${data.page} `];
   const isOwn = (key) => own.some((start) => key?.startsWith(start));
   const again = sessionStorage.getItem(RUN)?.startsWith("{") ? JSON.parse(sessionStorage.getItem(RUN)) : {};
   if (again.page) note(RUN, "tried");
-  // The service worker has made a newer edition whole. In a frame that forbids storage to ask for it is an error.
+  // The service worker has stored a newer edition. In a frame that forbids storage, asking for the worker is an error.
   if (self === top) navigator.serviceWorker?.addEventListener("message", ({ data: { edition } }) =>
     edition && script("keep.js").then(({ tellOfRenewal }) => tellOfRenewal(tools)).catch(() => {}));
   if (again.page === data.page) {
     addEventListener("load", () => scrollTo(0, again.line));
-    window.figuresRan.then(() => ask(again.number)); // what the reader has moved stands there again (see book.js)
+    window.figuresRan.then(() => ask(again.number)); // after the figures are restored (see book.js)
   }
   else if (store.isNewer) tools.say(globalThis.progress.whyNotKept());
   else if (store.keys().some(isOwn)) ask();

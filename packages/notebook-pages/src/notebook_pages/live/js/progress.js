@@ -1,5 +1,5 @@
-// What the reader has done, kept in this browser alone: nothing is sent anywhere. The scripts of the page find the store
-// here, and the record as ``progress``; where it has no room, the record lasts as long as the page.
+// The reader's progress, stored only in this browser: nothing is sent anywhere. The scripts of the page find the store
+// here, and the record as ``progress``; if the store has no room, the record lasts as long as the page.
 import { NEWER, Store } from "./store.js";
 
 const root = new URL(document.documentElement.dataset.content_root || "./", location.href).pathname;
@@ -10,11 +10,11 @@ export const page = decodeURI(location.pathname).slice(decodeURI(root).length).r
 export const all = () => store.record();
 export const here = () => store.record()[page] ?? blank();
 
-// Why the record may be gone with the page; nothing where the browser keeps it.
+// Why the record may be lost with the page; nothing if the browser stores it.
 let kept = true;
 export function whyNotKept() {
   if (store.isNewer) return NEWER;
-  // The page's head puts a store that lasts as long as the page where storage is forbidden.
+  // If storage is forbidden, the page's head replaces it by a store that lasts as long as the page.
   return kept && !window.keepsNothing ? "" : "This browser does not let the page store anything, so your record lasts only as long as the page is open.";
 }
 
@@ -25,7 +25,7 @@ export function change(action) {
   document.dispatchEvent(new CustomEvent("progress"));
 }
 
-// Take a record that was exported in the place of this one.
+// Replace this record by an exported one.
 export function replace(value) {
   for (const name of Object.keys(all())) store.keepRecord(name, blank());
   kept = store.takeRecord(value?.pages);
@@ -34,7 +34,7 @@ export function replace(value) {
 const note = (list, name) => {
   if (name && !here()[list].includes(name)) change((now) => now[list].push(name));
 };
-// A section counts as read when its last lines have been on the screen for a while.
+// A section counts as read when its last lines have been on the screen for some time.
 const A_WHILE = 1500;
 const waiting = new Map();
 const reading = new IntersectionObserver((entries) => {
@@ -46,7 +46,7 @@ const reading = new IntersectionObserver((entries) => {
 });
 for (const section of document.querySelectorAll(".bd-article > section > section")) reading.observe(section.lastElementChild);
 
-// What is done with pencil and paper, the reader ticks.
+// Exercises with pencil and paper are ticked by the reader.
 for (const exercise of document.querySelectorAll(".admonition.exercise[id]")) {
   const label = document.createElement("label");
   const box = Object.assign(document.createElement("input"), { type: "checkbox", checked: here().done.includes(exercise.id) });
@@ -60,7 +60,7 @@ for (const exercise of document.querySelectorAll(".admonition.exercise[id]")) {
   exercise.append(label);
 }
 
-// What the page's own Python has checked, and found right.
+// The answers that the page's own Python has checked and found right.
 const RIGHT = '.coursework-reply[data-outcome="correct"]';
 new MutationObserver((changes) => {
   for (const { addedNodes } of changes)

@@ -1,18 +1,18 @@
-// The life of the page's Python: started, given one cell at a time, interrupted, ended.
+// The life of the page's Python: it is started, given one cell at a time, interrupted, and ended.
 
-// Milliseconds. Before Python's thread says anything it has to be fetched itself, and what it starts with.
+// Milliseconds. Before Python's thread reports anything, it and the files that it starts with have to be fetched.
 const SILENCE = 18_000;
-// A run that cannot be interrupted in this time is ended, and everything that it knew with it.
+// A run that cannot be interrupted in this time is ended, and everything that it has defined is lost.
 const PATIENCE = 2500;
-// Python that took the number away is asked again after this time: an interrupt that comes between the two steps of its
-// check is lost, and so is one that comes while an object is deleted.
+// Python that has read the interrupt but goes on is interrupted again after this time: an interrupt between the two
+// steps of its check is lost, and so is one during the deletion of an object.
 const LONGER = 5000;
 
 export class Python {
   constructor(place, listener) {
     this.listener = listener;
     this.jobs = 0;
-    // Shared memory, through which Python is asked to stop, is given to isolated pages only.
+    // Shared memory, through which Python is asked to stop, is available to isolated pages only.
     this.interrupts = globalThis.crossOriginIsolated && typeof SharedArrayBuffer === "function" ? new Uint8Array(new SharedArrayBuffer(1)) : null;
     this.worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
     this.ready = new Promise((resolve, reject) => {
@@ -44,7 +44,7 @@ export class Python {
     } else if (data.job === undefined || data.job === this.current?.job) this.listener(data, this.current?.show);
   }
 
-  // Run code; ``kept`` are the files of coursework as the browser has them; ``show`` is given each output as it comes. Resolves to the outcome.
+  // Run code and resolve to the outcome. ``kept`` are the files of coursework; ``show`` is given each output as it comes.
   run(code, name, needs, show, retry, kept) {
     return new Promise((settle) => {
       this.current = { job: ++this.jobs, settle, show };
@@ -53,12 +53,12 @@ export class Python {
     });
   }
 
-  // Put files into the folder ``dropped``, in place of those before.
+  // Put files into the folder ``dropped``, in place of the files before.
   put(files) {
     this.worker.postMessage({ type: "files", files });
   }
 
-  // Tell a widget's Python side what has changed on the page. It is heard before the next run.
+  // Tell a widget's Python side what has changed on the page. It is processed before the next run.
   tell(name, data) {
     this.worker.postMessage({ type: "widget", name, data });
   }
@@ -74,14 +74,14 @@ export class Python {
     this.interrupts[0] = 2; // SIGINT
     clearTimeout(this.timer);
     const giveUp = () => this.end("interrupted");
-    // Python takes the number away when it reads it.
+    // Python resets the number when it reads it.
     this.timer = setTimeout(() => {
       if (this.interrupts[0]) giveUp();
       else this.timer = setTimeout(() => (again ? this.interrupt(false) : giveUp()), LONGER);
     }, PATIENCE);
   }
 
-  // End the thread; what runs in it has no outcome but this one. ``about`` says whether a file may be lost.
+  // End the thread; what runs in it gets this outcome. ``about`` says whether a file may be lost.
   end(reason, about) {
     clearTimeout(this.silence);
     this.worker.terminate();

@@ -1,10 +1,10 @@
-// Registered when the reader asks for what it does, and for nothing else: it isolates the pages, so that Python can be
-// interrupted also where the server sends no such headers, and it gives the pages that were kept.
+// Registered only when the reader asks for something that needs it: it isolates the pages, so that Python can be
+// interrupted even if the server does not send the required headers, and it returns the stored pages.
 import { Editions } from "./editions.js";
 
 const SITE = new URL("./", location.href).pathname;
 const editions = new Editions(SITE);
-const RACE = 2000; // milliseconds: so long a page waits for a newer edition to come whole, before the kept one is shown
+const RACE = 2000; // milliseconds that a page waits for a newer edition before the stored one is shown
 
 addEventListener("install", () => skipWaiting());
 addEventListener("activate", (event) => event.waitUntil(clients.claim()));
@@ -16,21 +16,21 @@ const ISOLATED = {
 };
 
 function isolated(answer) {
-  if (answer.status === 0 || answer.redirected) return answer; // a redirection: the browser asks again
+  if (answer.status === 0 || answer.redirected) return answer; // the browser follows a redirection by a new request
   const headers = new Headers(answer.headers);
   for (const [name, value] of Object.entries(ISOLATED)) headers.set(name, value);
   const empty = [101, 204, 205, 304].includes(answer.status);
   return new Response(empty ? null : answer.body, { status: answer.status, statusText: answer.statusText, headers });
 }
 
-// Whether the address is one of the book's own: below a root, others may have theirs. ``self.bookHolds`` is what
-// install.py found at the top of the site; JupyterLite has a service worker of its own, and hangs in an isolated page.
+// Whether the address is one of the book's own, as below a root there may be others. ``self.bookHolds`` is what
+// install.py found at the top of the site; JupyterLite has its own service worker, and hangs in an isolated page.
 function isOurs({ origin, pathname, searchParams }) {
   if (origin !== location.origin || !pathname.startsWith(SITE) || searchParams.has("kept")) return false;
   return ["", ...self.bookHolds].includes(decodeURI(pathname.slice(SITE.length)).split("/")[0]);
 }
 
-// A kept book renews itself: whole, or not at all. Pages that are open, and were there before, are told.
+// Update a stored book, completely or not at all, and tell the pages that were open before.
 let looking = null;
 async function renew() {
   const there = await editions.newest();
@@ -40,7 +40,7 @@ async function renew() {
 }
 
 async function answer(event, url) {
-  // Where nothing has come of the last look, or it still goes on, no page waits for the next one.
+  // A page that opens while an update is in progress does not wait for it.
   if (event.request.mode === "navigate" && !looking) {
     looking = renew().catch((error) => console.info(`The stored book stays as it is: ${error.message}`));
     const over = looking.finally(() => (looking = null));

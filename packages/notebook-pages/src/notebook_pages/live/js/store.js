@@ -1,21 +1,21 @@
-// The store: all that a browser keeps of a book, its rules and its one version. Nothing else asks the browser to keep
-// anything, but for what belongs to one tab and ends with it. It has three rooms, all named after the site, so that two
-// books at one address keep apart what belongs to them:
+// The store: all that a browser stores of a book, with its rules and its version. Nothing else is stored in the
+// browser, except what belongs to one tab and ends with it. There are three kinds of storage, all named after the site,
+// so that two books at one address stay separate:
 //
-// - entries, short texts as JSON, in localStorage: there they are kept at once, also when the tab ends in the next
-//   moment, and other tabs hear of them. One fact has one entry, so that no tab writes over what another one knows:
-//     version                    of the store, as it was when something was last written
-//     answer PAGE CELL           what the reader has written in a cell; earlier PAGE CELL PRINT: what it took the place of
-//     given PAGE CELL            a question as a run gave it to this reader, with their own numbers
-//     agreed PAGE                on what the page and its notebook last agreed
+// - entries, short texts as JSON, in localStorage: they are stored at once, even if the tab is closed in the next
+//   moment, and other tabs hear of them. One fact has one entry, so that no tab overwrites what another one knows:
+//     version                    of the store, at the time of the last change
+//     answer PAGE CELL           what the reader has written in a cell; earlier PAGE CELL PRINT: what this replaced
+//     given PAGE CELL            the question that a run showed to this reader, with their own numbers
+//     agreed PAGE                what the page and its notebook last agreed on
 //     record PAGE LIST NAME      one thing that was read, done or checked, or one question that was answered
 //     question NAME              what coursework knows of one question; coursework NAME: its other texts
 //     setting NAME               what the reader has chosen, or what the browser has fetched
-// - editions of the book, whole or not at all: files by their content in one cache, and the list that names the newest
-//   (editions.js); the service worker, which has no entries, finds the version in that list;
-// - notebooks, in the database that JupyterLite makes (notebooks.js).
+// - editions of the book, stored completely or not at all: files by their content in one cache, and the list that names
+//   the newest (editions.js); the service worker cannot read the entries, and finds the version in that list;
+// - notebooks, in the database that JupyterLite creates (notebooks.js).
 //
-// What a newer version has kept is left alone, and the reader is told. What finds no room lasts as long as the page.
+// Data of a newer version is left alone, and the reader is told. Data without room lasts as long as the page.
 export const VERSION = 3;
 export const NEWER = "A newer edition of this book has stored data in this browser in a form that this page cannot read. It stays"
   + " as it is. What you do here lasts until you leave the page; a reload may bring the newer edition.";
@@ -36,7 +36,7 @@ export function fingerprint(text) {
   return (4294967296 * (2097151 & b) + (a >>> 0)).toString(36);
 }
 
-// Values for which the browser had no room, by key: they last as long as the page, for all scripts that include this.
+// Values for which the browser had no room, by key: they last as long as the page, for all scripts that import this.
 const unkept = (globalThis.unkept ??= new Map());
 
 // The browser's value of a key of any kind; null also if access is forbidden.
@@ -70,7 +70,7 @@ export class Store {
     return parsed(found(`${this.prefix}version`)) > VERSION;
   }
 
-  // The browser's entries, without those that found no room.
+  // The value in the browser, without those for which there was no room.
   kept(key) {
     return this.isNewer ? null : parsed(found(this.prefix + key));
   }
@@ -102,14 +102,14 @@ export class Store {
     unkept.delete(this.prefix + key);
     try {
       if (!this.isNewer) localStorage.removeItem(this.prefix + key);
-    } catch {} // it has nothing
+    } catch {} // access is forbidden
   }
 
   keys() {
     let there = [];
     try {
       if (!this.isNewer) there = Object.keys(localStorage);
-    } catch {} // it has none
+    } catch {} // access is forbidden
     const own = [...there, ...unkept.keys()].filter((key) => key.startsWith(this.prefix));
     return [...new Set(own)].map((key) => key.slice(this.prefix.length));
   }
@@ -228,7 +228,7 @@ export class Store {
   }
 }
 
-const HELP = ["mistake", "hint", "solution"]; // from little to much, as in coursework.checking.reply
+const HELP = ["mistake", "hint", "solution"]; // in order of increasing help, as in coursework.checking.reply
 // The field of a question's entry for its other variants, by number (see coursework.checking.progress).
 const OTHERS = "other variants";
 

@@ -1,4 +1,4 @@
-// What the reader takes away and brings back: the page's notebook with the answers in it, and all answers in one file.
+// Files that the reader exports and imports: the page's notebook with the answers in it, and all answers in one file.
 import { Answers, nameCells, store } from "./answers.js";
 import { allCopies, bookCells, placeBeside, readCopy, writeCopy } from "./notebooks.js";
 import { fingerprint, NEWER, VERSION } from "./store.js";
@@ -22,7 +22,7 @@ function choose(kinds) {
   });
 }
 
-// ``data`` is what the page says of itself; ``originals`` is the book's code in its cells.
+// ``data`` describes the page; ``originals`` is the book's code in its cells.
 function named(data, originals) {
   return nameCells(originals.map((original, k) => ({ name: data.cells[k]?.name, original })));
 }
@@ -31,7 +31,7 @@ async function bookNotebook(data, originals) {
   const answer = await fetch(new URL(data.notebook, location.href), { cache: "no-cache" });
   if (!answer.ok) throw new Error(`the page’s notebook could not be downloaded (${answer.status})`);
   const notebook = await answer.json();
-  // The notebook may hold cells that the page does not show.
+  // The notebook may contain cells that the page does not show.
   const all = notebook.cells.filter((cell) => cell.cell_type === "code");
   let next = 0;
   const codes = originals.map((original) => {
@@ -42,8 +42,8 @@ async function bookNotebook(data, originals) {
   return { notebook, codes };
 }
 
-// Code in which nobody has said who works there, with the name that this browser knows: elsewhere the numbers of the
-// questions would be everybody's.
+// Code that gives no student ID, with the ID that this browser knows: elsewhere the questions would have the default
+// numbers.
 function signed(code) {
   const name = store.read("coursework me.txt")?.text.trim();
   return name ? code.replace(/^(# )?student\((''|""|'your ID')\)/m, () => `student(${JSON.stringify(name)})`) : code;
@@ -64,13 +64,13 @@ export async function handIn(data, originals) {
     kept.delete(name);
     answered += 1;
   });
-  notebook.metadata.book = { cells: stamp }; // by which it is loaded back
+  notebook.metadata.book = { cells: stamp }; // for importing it
   save(data.notebook.split("/").at(-1), `${JSON.stringify(notebook, null, 1)}\n`);
   const left = kept.size ? ` ${count(kept.size, "text", "texts")} written for an older edition ${kept.size === 1 ? "is" : "are"} not in it: decide about each on the page first.` : "";
   return `Saved with what you have written in ${count(answered, "cell")} of this page.${left}`;
 }
 
-// Answers out of such a notebook, or out of one that was written elsewhere.
+// Import the answers of such a notebook, or of one that was written elsewhere.
 export async function load(data, originals) {
   const file = await choose(".ipynb");
   let notebook;
@@ -84,7 +84,7 @@ export async function load(data, originals) {
   const names = named(data, originals);
   const codes = notebook.cells.filter((cell) => cell.cell_type === "code");
   const found = new Map(bookCells(notebook).map((cell) => [cell.name, cell.text]));
-  // What no grader names is told by its place in the notebook as it was taken away.
+  // In a notebook without a stamp, cells without a grader's name are identified by their order if none was added.
   const inPlace = !notebook.metadata?.book && codes.length === originals.length;
   if (!names.some((name, k) => found.has(name) && (data.cells[k]?.name || found.get(name) === originals[k]))) {
     return `${file.name} is not the notebook of this page: nothing was changed.`;
@@ -117,7 +117,7 @@ export async function backUp() {
   return `Saved: ${count(answers, "answer")} and ${count(Object.keys(notebooks).length, "notebook")}.`;
 }
 
-// Bring back what a backup holds. What is here and newer stays; the other text is set aside, or kept beside it.
+// Restore a backup. Newer texts in the browser stay; the other text is set aside, or stored beside it.
 export async function restore() {
   if (store.isNewer) return NEWER;
   const file = await choose(".json");

@@ -1,4 +1,4 @@
-// Python for one page, in a thread of its own: loads the runtime, then runs what the page sends.
+// Python for one page, in its own thread: loads the runtime, then runs what the page sends.
 import display from "../python/IPython/display.py";
 import ipython from "../python/IPython/__init__.py";
 import interactiveshell from "../python/IPython/core/interactiveshell.py";
@@ -16,20 +16,20 @@ const FILES = {
   "IPython/lib/__init__.py": "",
   "IPython/lib/pretty.py": pretty,
 };
-const SILENCE = 14; // seconds without a byte, after which a file is given up
+const SILENCE = 14; // seconds without data, after which a download is given up
 let refused = {};
-const faults = []; // what could not be fetched, and why
+const faults = []; // failed downloads, with reasons
 const NUMERICAL = ["numpy", "matplotlib"];
 
 let python, shell, packages, job;
-const COURSEWORK = ".coursework"; // the folder in which it keeps who works here, and how far
-const DROPPED = "dropped"; // the folder for files that a reader gives a cell
-let files = {}; // the texts of its files, as the page has them
-let widget = null; // the one whose observers are at work
-let line = false; // whether widgets can talk with the page
+const COURSEWORK = ".coursework"; // the folder for the files of coursework, with who works here and the progress
+const DROPPED = "dropped"; // the folder for files that the reader gives to a cell
+let files = {}; // the texts of the files of coursework, as the page has them
+let widget = null; // the widget whose observers are running
+let line = false; // whether widgets can exchange messages with the page
 
 const errorText = (error) => String(error?.message ?? error);
-// Names of modules, by the packages that bring them and are not loaded.
+// Names of modules, by the packages that contain them and are not loaded.
 const absentModules = () =>
   Object.entries(packages)
     .filter(([name]) => !(name in python.loadedPackages))
@@ -50,14 +50,14 @@ function tellWhatIsMissing() {
 
 const fileOf = (url) => new URL(url, location.href).pathname.split("/").at(-1);
 
-// Every file is fetched through this: it counts the bytes as they come, gives up where none do, and says what failed.
+// Every file is fetched through this function: it counts the bytes, gives up if none come, and reports failures.
 function watchFetching(all) {
   const plain = self.fetch;
   let bytes = 0, told = 0;
   self.fetch = async (address, { integrity, ...options } = {}) => {
     const url = String(address.url ?? address), giveUp = new AbortController();
     let waiting = true, silent = 0;
-    // Seconds in which this thread was free to see bytes, and saw none.
+    // Seconds in which this thread was free to receive data, and received none.
     const clock = setInterval(() => {
       silent = waiting ? silent + 1 : 0;
       if (silent >= SILENCE) giveUp.abort();
@@ -100,7 +100,7 @@ function watchFetching(all) {
     });
     const seen = new Response(body, { status: answer.status, headers: answer.headers });
     if (!integrity) return seen;
-    // The browser checks a fingerprint only when all has come: the bytes are counted before that.
+    // The browser checks a fingerprint only when everything has arrived, so the bytes are counted before that.
     const whole = URL.createObjectURL(await seen.blob());
     try {
       return await plain(whole, { integrity });
@@ -112,13 +112,13 @@ function watchFetching(all) {
   };
 }
 
-// Of a module that is broken, or forbidden, Pyodide tells the console only.
+// Report a module that is broken or forbidden, as Pyodide reports it only to the console.
 function watchModules() {
   if (typeof WebAssembly === "undefined") throw new Error("this browser, or one of its settings, forbids WebAssembly");
   for (const name of ["instantiate", "instantiateStreaming"]) {
     const plain = WebAssembly[name];
     WebAssembly[name] = async (...given) => {
-      // Small modules only ask what the browser can do.
+      // Small modules only test what the browser supports.
       if (name === "instantiateStreaming" || given[0]?.byteLength > 1e6) postMessage({ type: "compiling" });
       try {
         return await plain(...given);
@@ -174,7 +174,7 @@ async function start({ runtime, pyodide, lock: listed, interrupts }) {
   });
 }
 
-// The page's newest texts go into the folder; what a run has written there goes to the page.
+// Put the page's newest texts into the folder; what a run has written there is sent to the page.
 function putFiles(kept) {
   python.FS.mkdirTree(COURSEWORK);
   for (const [name, text] of Object.entries(kept)) {
@@ -194,7 +194,7 @@ function takeFiles() {
   }
 }
 
-// Load the package that brings a module, and say why if it does not come.
+// Load the package that contains a module, and say why if that fails.
 async function bring(module) {
   const name = packageOf(module);
   if (!name || name in refused) return false;
@@ -221,7 +221,7 @@ async function bring(module) {
   return came;
 }
 
-// What a reader has given a cell of the page.
+// Store the files that a reader has given to a cell of the page.
 function putDropped(files) {
   python.FS.mkdirTree(DROPPED);
   for (const name of python.FS.readdir(DROPPED)) if (!/^\.+$/.test(name)) python.FS.unlink(`${DROPPED}/${name}`);
@@ -238,21 +238,21 @@ async function run({ code, name, needs = [], retry, kept }) {
   for (;;) {
     const outcome = JSON.parse(await shell.run(code, name));
     takeFiles();
-    // The build knows that without it the cell fails, or gives another number than the book prints. It runs all the
-    // same, as it did there: the cells below may use the names that it gives before it fails.
+    // The build knows that without this module the cell fails, or gives another number than the book prints. It runs
+    // all the same, as in the build: the cells below may use the names that it defines before it fails.
     if (lacked && ["ok", "error"].includes(outcome.status)) {
       return { status: "missing", package: lacked, reason: refused[packageOf(lacked)] };
     }
     if (outcome.status !== "missing") return outcome;
     if (!(await bring(outcome.package))) {
-      // It may have been asked for only now: the reason is the newest one.
+      // It may have been requested only now: the reason is the newest one.
       return { ...outcome, reason: refused[packageOf(outcome.package)] ?? outcome.reason };
     }
     postMessage({ type: "output", job, message: { type: "clear" } });
   }
 }
 
-// The reader has moved a figure: its Python side learns of it, and those who observe it.
+// The reader has moved a figure: tell its Python side, and its observers.
 function hear({ name, data }) {
   widget = name;
   postMessage({ type: "observed", widget, message: { type: "clear" } });

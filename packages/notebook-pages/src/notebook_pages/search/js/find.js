@@ -26,28 +26,28 @@ function overlap(one, other) {
   return common;
 }
 
-// If both answer equally well, readers rather look for one of these kinds than for another.
+// If places of several kinds answer equally well, these are the kinds that readers prefer.
 const KINDS = {
   page: 1.1, section: 1.05, term: 1.06, function: 0.92, exercise: 0.88, example: 0.85, equation: 0.6, figure: 0.8,
 };
 const IN_LONG = { term: 0.85 }; // a question of more than two words asks for more than a term
-const ASKED = 0.95; // what a place counts at least that readers ask for in words of their own
-const WITHIN = { about: 0.45, text: 0.25 }; // what a word counts that stands not in a phrase, but there
-const SYNONYM = 0.8, SAME = 1.5; // for a synonym, the very words
-const OF_WEAK = 0.4, OF_OTHERS = 0.6; // for words that say little, and of no subject
-const APART = 0.7; // for a word of a name of several words, without the others
-const POWER = 1.5, OWN = 0.5; // how the share that is answered counts, and that of a phrase's own words
-const TOGETHER = 4; // the power in which what the phrases of a place are worth is added: the best counts most
-const ENDS = 6, ENDED = 0.7; // with how many ends a last word is tried; what that counts where it is a word as it stands
-const OTHER_WAY = 0.6, NO_WAY = 0.7; // where a conversion is asked for: the one back, or none
-// Added to a page whose title begins with the question, and twice for a chapter: no other place gets as much. A word
+const ASKED = 0.95; // the least score of a place with phrases in the words of readers
+const WITHIN = { about: 0.45, text: 0.25 }; // the weight of a word that is not in a phrase, but there
+const SYNONYM = 0.8, SAME = 1.5; // for a synonym, and for exactly the same words
+const OF_WEAK = 0.4, OF_OTHERS = 0.6; // for words that say little, and for words not of the subject
+const APART = 0.7; // for one word of a name of several words, without the others
+const POWER = 1.5, OWN = 0.5; // how the answered share counts, and the share of a phrase's own words
+const TOGETHER = 4; // the power in which the scores of the phrases of a place are added: the best counts most
+const ENDS = 6, ENDED = 0.7; // how many completions of a last word are tried, and their weight if it is a word
+const OTHER_WAY = 0.6, NO_WAY = 0.7; // where a conversion is asked for: for the opposite one, or for none
+// Added to a page whose title starts with the question, and twice for a chapter: no other place gets as much. A word
 // within the title counts half.
 const BEGUN = 2;
 const headed = (text) => plain(text).replace(/^(?:the|an?) +(?=.)/, "").replace(/-/g, " ");
 const isName = (query) => /^\w*[a-z]_[a-z]\w*$|^[a-z]{2,}(?:[A-Z][a-z]+)+$/.test(query);
 const named = (query) => plain(query.replace(/([a-z])([A-Z])/g, "$1_$2"));
 
-// Words of names of several words: "rotate vectors" is no rotation vector, but "rotation vectors" are.
+// The words of names of several words: "rotate vectors" is not a rotation vector, but "rotation vectors" are.
 const single = (word) => (word.length < 4 || word.endsWith("ss") ? word
   : word.replace(/(?<=[sxz]|ch|sh)es$|s$/, "").replace(/([iy])z(?=e|ed|ing|ation)/, "$1s"));
 const BETWEEN = new Set(["and", "the"]);
@@ -64,13 +64,13 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   for (const [id, asked] of more.asked ?? []) entries[id].asked = [...entries[id].asked ?? [], ...asked];
   for (const entry of entries) entry.kind = kinds[entry.kind ?? 0], entry.page ??= 0;
 
-  // Concepts have several names, of one word or more, and so have things that can be converted into one another.
-  const heads = new Map(); // the names that begin with a word
+  // Concepts have several names of one or more words, and so have things that can be converted into one another.
+  const heads = new Map(); // the names that start with a word
   for (const [of, groups] of Object.entries(synonyms)) for (const [number, group] of groups.entries()) {
     for (const name of group) {
       const list = read(name).all.filter((word) => !BETWEEN.has(word)).map(single);
       if (list.join("").length < 2) continue;
-      const exact = list.length > 1 || of === "conversions"; // "rotation" is no "rot"
+      const exact = list.length > 1 || of === "conversions"; // "rotation" is not "rot"
       if (!exact) list[0] = stem(list[0]);
       const head = `${exact} ${list[0]}`;
       heads.set(head, [...heads.get(head) ?? [], { of, number, list }]);
@@ -133,7 +133,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   }
   const ofNames = entries.filter(({ kind }) => kind === "term" || kind === "function").map(({ title }) => title);
   const ofSubject = new Set([...Object.values(synonyms).flat(2), ...ofNames].flatMap(words));
-  const size = (term) => spread.get(term)?.size ?? 0; // in how many entries it stands
+  const size = (term) => spread.get(term)?.size ?? 0; // the number of entries that contain it
   const rarity = (term) => Math.log(1 + entries.length / (1 + size(term)));
   const worths = ({ list, signs }) => list.map((word, k) => {
     const same = signs.filter((sign) => !isWay(sign) && sign.start === k && sign.end === k + 1);
@@ -145,7 +145,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   for (const document of documents) if (!document.within) document.worths = worths(document), document.worth = sum(document.worths);
   const formulas = (more.tex ?? []).map(([id, tex]) => ({ id, signs: pairs(signs(tex)) }));
 
-  // Rewrite a question in the words of the book: joined or split as there, and without typing errors.
+  // Rewrite a question in the words of the book: joined or split as in the book, and without typing errors.
   const isKnown = (word) => forms.has(word) || size(stem(word)) > 2;
   const widest = (list) => list.reduce((best, word) => (size(stem(word)) > size(stem(best)) ? word : best));
   function mended(text) {
@@ -156,7 +156,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
         const two = [one, next];
         if (next && !two.some(isLeftOut) && !two.every(isKnown) && isKnown(one + next)) return k += 1, [one + next];
         if (isKnown(one) || one.length < 4 || isLeftOut(one) || forms.atPrefix(one).size) return [one];
-        const letters = /^([a-z]{3,})\d\w*$/.exec(one)?.[1]; // Vector3
+        const letters = /^([a-z]{3,})\d\w*$/.exec(one)?.[1]; // such as Vector3
         if (letters) return [letters];
         const cut = [...one].map((_, j) => [one.slice(0, j), one.slice(j)])
           .find((parts) => parts.every((part) => part.length > 2 && forms.has(part)));
@@ -176,7 +176,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   const meant = (word) => (having.has(word) ? [[word, 1]] : word.length < 3 ? []
     : [...having.atPrefix(word).keys()].map((term) => [term, 0.92 - 0.02 * (term.length - word.length)]));
 
-  // The completions of a question whose last word is unfinished: with the most frequent words that begin so.
+  // The completions of a question whose last word is unfinished, with the most frequent words that start this way.
   function finished(text) {
     const begun = /[a-z]+$/i.exec(text)?.[0].toLowerCase();
     return (begun ? [...forms.atPrefix(begun)] : []).filter(([form]) => form !== begun)
@@ -249,7 +249,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   }
 
   // The entries that answer the question, the best first.
-  let before = new Map(); // what the letter typed last made of it: the next one asks for much of that again
+  let before = new Map(); // the results for the letters so far: the next letter needs most of them again
   return (query, most = 12) => {
     const scores = new Map(), take = (found, share = 1) => {
       for (const [id, score] of found) scores.set(id, Math.max(scores.get(id) ?? 0, score * share));

@@ -1,5 +1,5 @@
-// Shows, while a reader types into a field of the search, the places that answer: below the field, the best first.
-// The index stands before this script, in the same file (see notebook_pages/search): a page from a disk may fetch nothing.
+// Show the places that answer, while the reader types into a search field: below the field, the best first. The index
+// precedes this script in the same file (see notebook_pages/search), as a page opened from disk may not fetch.
 import { finder } from "./find.js";
 import { pasted } from "./pasted.js";
 
@@ -45,10 +45,10 @@ function attach(form) {
   else form.after(count, list);
   const links = () => [...list.querySelectorAll("a")];
   const answer = () => {
-    if (list.contains(document.activeElement)) return; // whoever is among the answers keeps them
+    if (list.contains(document.activeElement)) return; // the answers stay while one of them has the focus
     const query = field.value.trim();
-    const numbers = numbersFirst(query); // in which there is nothing to be looked for
-    const begun = query.length < 3 && /^[\p{Script=Latin}\d\s]*$/u.test(query); // a word, or nothing yet
+    const numbers = numbersFirst(query); // with numbers there is nothing to look up
+    const begun = query.length < 3 && /^[\p{Script=Latin}\d\s]*$/u.test(query); // a single word so far, or nothing
     const found = begun ? [] : numbers.length ? numbers : find(query).map(shown);
     list.replaceChildren(...found);
     count.textContent = begun ? "" : found.length
@@ -67,7 +67,7 @@ function attach(form) {
     if (next) event.preventDefault(), next.focus();
   };
   for (const part of [field, list]) part.addEventListener("keydown", move);
-  // A place on this page is come to beneath the palette.
+  // The dialog closes, as the answer may be a place on this page, below it.
   list.addEventListener("click", () => form.closest("dialog")?.close());
   const asked = new URLSearchParams(location.search).get("q");
   if (place && asked && !field.value && !form.closest("dialog")) field.value = asked;

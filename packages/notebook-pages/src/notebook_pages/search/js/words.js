@@ -1,13 +1,13 @@
-// The words of a text as the search compares them: without accents, capitals, endings and what says nothing.
+// The words of a text as the search compares them: without accents, capitals, endings and words that say nothing.
 
-// Without these a question is the same; "to" and "from" are read before they go, for they tell which way to convert.
+// Words that do not change a question; "to" and "from" are read first, as they tell the direction of a conversion.
 const LEFT_OUT = new Set(("a about again am an and any are as at be been being between both but by can correctly could did do does"
   + " doing don for from get gets getting give gives had has have how i if in into is isn it its just let lets"
   + " like make makes me my need no not of off on one only or our please properly s shall should so some such t"
   + " than that the their them then there these they this those to too try trying up us use used uses using versus"
   + " via vs want was we what whats when where which while who why will with would you your").split(" "));
 export const isLeftOut = (word) => LEFT_OUT.has(word);
-// These say what is wanted, and little about where it stands: words of questions and of complaints.
+// Words of questions and complaints that say what is wanted, but little about where to find it.
 const WEAK_WORDS = "3d able access accurate action actual actually add additional against algorithm allow always appear"
   + " application apply approach around ask assume available away back bad basic basics behave behavior behaviour"
   + " best better book broken bug build calculate calculation call case cause certain change chapter clarify clear"
@@ -33,18 +33,18 @@ const WEAK_WORDS = "3d able access accurate action actual actually add additiona
   + " tool topic tried trouble tutorial two type unable unclear understand unexpected unexplainable unknown"
   + " unusual update useful user usual usually value various version visual way weird well whether whole without"
   + " wonder word work working worse write wrong yet"
-  // Programs and languages: the convention card names them, and most questions that do ask for something else.
+  // Programs and languages: the convention card names them, but most questions with them ask for something else.
   + " arduino babylon blender cpp directx eigen glm glsl godot java javascript js matlab numpy opencv opengl pyopengl pytorch qt"
   + " ros space unity unreal webgl";
 const IRREGULAR = new Map(Object.entries({ matrices: "matrix", axes: "axis", vertices: "vertex", indices: "index", gimble: "gimbal", gimbals: "gimbal", euler: "euler", eulers: "euler", oiler: "euler", inertia: "inertia", bias: "bias", unity: "unity", derivative: "derivative", derivatives: "derivative", biases: "bias", radians: "radian", rad: "radian", deg: "degre", ninety: "90", meaning: "meaning", handed: "handed" }));
 const ENDINGS = /(?:ati(?:ons?|ves?|ng|onal)|at(?:es?|ed|ors?)|i(?:ng|ngs|es|ed)|ed|es|ly|s|e|y)$/;
 const GREEK = { α: "alpha", β: "beta", γ: "gamma", δ: "delta", θ: "theta", λ: "lambda", π: "pi", σ: "sigma", φ: "phi", ϕ: "phi", ψ: "psi", ω: "omega", Ω: "omega" };
-// What words are told apart by: names of the software whole, numbers of sections whole, arrows.
+// The tokens that are compared: whole names of software, whole numbers of sections, and arrows.
 const TOKEN = /[a-z]+\d*(?:_[a-z0-9]+)+|\d+\.\d+|[a-z0-9]+|->|=>|→/g;
 
 export const plain = (text) => text.replace(/°/g, " degrees ").replace(/[α-ωϕΩ]/g, (sign) => ` ${GREEK[sign] ?? ""} `).normalize("NFD").replace(/[\u0300-\u036f]/g, "").toLowerCase();
 
-// The stem of a word, about: endings of English, as long as three letters stay.
+// The approximate stem of a word: removes English endings as long as three letters remain.
 export function stem(word) {
   if (IRREGULAR.has(word)) return IRREGULAR.get(word);
   if (/\d/.test(word)) return word;
@@ -55,14 +55,14 @@ export function stem(word) {
 const WEAK = new Set(WEAK_WORDS.split(" ").map(stem));
 export const isWeak = (word) => word.length < 2 || WEAK.has(word);
 
-// All words in their order; of a name such as dcm_from_quaternion or dcmFromQuaternion those that it is made of.
+// All words in their order; names such as dcm_from_quaternion or dcmFromQuaternion are split into their words.
 function told(text) {
   const apart = text.replace(/\b(what|does|do)\b(.*)\bmean\b/i, "$1$2").replace(/\bmeans?\s*\??$/i, "").replace(/([a-z]{2})([A-Z][a-z]{2,})/g, "$1 $2").replace(/\b([a-z]{3,})2([a-z]{3,})\b/gi, "$1 to $2")
     .replace(/\b([xyz])-([xyz])-([xyz])\b/gi, "$1$2$3").replace(/\b([123])-([123])-([123])\b/g, "$1$2$3");
   return (plain(apart).replace(/(?:n[’']t|[’'](?:s|re|m|ve|d|ll))\b/g, "").match(TOKEN) ?? []).flatMap((word) => (word.includes("_") ? word.split("_") : [word]));
 }
 
-// All words, and of those that count the stems and where they stand among all.
+// All words, and the stems of those that count with their places among all words.
 export function read(text) {
   const all = told(text), list = [], at = [];
   for (const [k, word] of all.entries()) if (!isLeftOut(word) && !/^[-=→]/.test(word)) list.push(stem(word)), at.push(k);
