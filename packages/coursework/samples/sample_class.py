@@ -1,8 +1,8 @@
-"""Makes a class to try grading on: right, mistaken, unfinished, broken and hostile notebooks.
+"""A sample class for trying out grading: right, mistaken, unfinished, broken and hostile notebooks.
 
-Run it with ``python packages/coursework/samples/sample_class.py FOLDER STUDENTS NOTEBOOK ...``.
-What went into each notebook is written down beside them in ``expected.json``, so that what comes
-out of grading can be held against it. Nobody in it is real, and the same seed makes the same class.
+Run it with ``python packages/coursework/samples/sample_class.py FOLDER STUDENTS NOTEBOOK ...``. The
+file ``expected.json`` beside the notebooks describes their contents, to compare with the results of
+grading. The students are fictitious, and the same seed makes the same class.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from coursework.authoring.author import AuthoredQuestion
     from coursework.grading.judging.contract import Asked
 
-#: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns
-#: anything; and none does damage if it succeeds, since somebody may try this class where students'
-#: code is not kept apart.
+#: Cells that try to get marks, or to escape. None knows an answer, so none earns anything, and none
+#: does damage if it succeeds, since somebody may use this class where students' code is not
+#: isolated.
 HOSTILE = {
     "replaces the check": "import coursework\ncoursework.check = check = lambda *answers: "
     "'Correct'",
@@ -84,14 +84,14 @@ class Part(NamedTuple):
 
 
 class Written(NamedTuple):
-    """An answer as code, and what is to come of it: the outcome and the note."""
+    """An answer as code, with the expected outcome and note."""
 
     code: str
     expected: tuple[str, str]
 
 
 class _Exercise:
-    """The notebook that is handed in, and how to answer in it."""
+    """The notebook that students hand in, and how to answer in it."""
 
     def __init__(self, stems: Iterable[str], folder: Path) -> None:
         import nbformat
@@ -155,7 +155,7 @@ class _Exercise:
         }
 
     def variant(self, name: str, identity: str) -> int:
-        """The number of a student's variant of a question."""
+        """Return the number of a student's variant of a question."""
         variants = self.questions[name]
         return numbers_of_variants(
             identity, name, variants[0].public.variant or Variant(), len(variants)
@@ -177,7 +177,7 @@ def _names_in(source: str) -> set[str]:
 
 
 def _names_made(source: str) -> set[str]:
-    """What a cell makes that students do not get; what is drawn for them they do get."""
+    """Return what a cell creates that students do not get; they do get what is drawn for them."""
     made: set[str] = set()
     for node in ast.parse(source).body:
         if isinstance(node, ast.FunctionDef):
@@ -188,7 +188,7 @@ def _names_made(source: str) -> set[str]:
 
 
 def code_of(answer: Any) -> str | None:
-    """Return Python code for an answer, or ``None`` if it has none that a student would write."""
+    """Return Python code for an answer, or ``None`` if a student would not write it."""
     import sympy
 
     if hasattr(answer, "tolist") and not isinstance(answer, sympy.MatrixBase):
@@ -211,7 +211,7 @@ def code_of(answer: Any) -> str | None:
 
 
 def _forms(question: AuthoredQuestion) -> Iterator[Any]:
-    """The right answer in other forms than its author's."""
+    """Iterate over the right answer in its author's form and others."""
     import sympy
 
     answer = question.answer
@@ -232,7 +232,7 @@ def _forms(question: AuthoredQuestion) -> Iterator[Any]:
 
 
 def _slip(question: AuthoredQuestion) -> Any:
-    """A wrong answer that no catalogue knows, the same each time."""
+    """Return a wrong answer that no catalogue knows, the same each time."""
     import sympy
 
     answer = question.answer
@@ -258,9 +258,7 @@ def _slip(question: AuthoredQuestion) -> Any:
 
 
 class _Answers:
-    """Code for right and wrong answers to every question, with what is
-    to come of each; worked out once.
-    """
+    """Code for right and wrong answers to every question, with their expected outcomes."""
 
     def __init__(self, exercise: _Exercise, dice: random.Random) -> None:
         from coursework.grading.judging.contract import Asked
@@ -283,7 +281,8 @@ class _Answers:
                         for mistake in reversed(question.mistakes)
                     }.values()
                 )
-                # A class has its favourite mistakes, also where the numbers of its members differ.
+                # Make some mistakes more frequent in a class, even where its members' numbers
+                # differ.
                 random.Random(order).shuffle(mistaken)
                 self.wrong[name, number] = self._with_code(
                     question, judged, [*mistaken[:6], _slip(question)]
@@ -313,7 +312,7 @@ class _Answers:
 
 
 class _Student:
-    """Works through the exercise and hands it in."""
+    """A student who works through the exercise and hands it in."""
 
     def __init__(
         self, exercise: _Exercise, answers: _Answers, dice: random.Random, identity: str
@@ -337,7 +336,8 @@ class _Student:
         chance = self.dice.random()
         first = part.questions[0], self.exercise.variant(part.questions[0], self.identity)
         if chance > 0.94 and len(part.questions) == 1:
-            return  # left open
+            # Leave the question open.
+            return
         if chance < skill or len(part.questions) > 1 or not self.answers.wrong[first]:
             self.solve(part)
             return
@@ -351,7 +351,7 @@ class _Student:
     def solve(self, part: Part) -> None:
         name = part.questions[0]
         forms = self.answers.right[name, self.exercise.variant(name, self.identity)]
-        # The author's own way may use what says what may vary, which students do not get.
+        # The author's own way may use names that draw variants, which students do not get.
         share = 0.4 if len(self.exercise.questions[name]) == 1 else 1
         if len(part.questions) == 1 and forms and self.dice.random() < share:
             code, outcome = self.dice.choice(forms)
@@ -379,14 +379,14 @@ class _Student:
         )
         self.expected.update(outcomes)
 
-    # -- what happens to notebooks
+    # -- alterations of notebooks
 
     def lose_metadata(self) -> None:
         for cell in self.cells:
             cell.metadata.pop("nbgrader", None)
 
     def run_out_of_order(self) -> None:
-        """Move the first code cell to the end; it ran first all the same."""
+        """Move the first code cell to the end, although it ran first."""
         first = next(order for order, cell in enumerate(self.cells) if cell.cell_type == "code")
         moved = self.cells.pop(first)
         self.cells.append(moved)
@@ -402,7 +402,7 @@ class _Student:
         self.expected[part.questions[0]] = ["not attempted", "missing"]
 
     def check_twice(self) -> None:
-        """Copy a cell and its check to the end: the last answer counts, and it is the same."""
+        """Copy a cell and its check to the end. The last answer counts, and it is the same."""
         part = self.dice.choice(self.exercise.parts)
         self.cells += copy.deepcopy(self.cells[part.cell : part.cell + 2])
 
@@ -452,7 +452,7 @@ def make_class(
     notebooks: Sequence[str] = (),
     solutions: str | Path | None = None,
 ) -> Path:
-    """Write a class to a folder, and give where its submissions are.
+    """Write a class to a folder, and return the location of its submissions.
 
     Parameters
     ----------
@@ -460,8 +460,7 @@ def make_class(
     students : int
     seed : int
     notebooks : list of str
-        The exercises that are joined into the notebook that is handed in; the first of all if none
-        is named.
+        The exercises that make up the submitted notebook; by default, the first of all.
     solutions : path, optional
     """
     folder = Path(solutions or find_course().sources)
@@ -469,7 +468,8 @@ def make_class(
         sorted(path.stem for path in folder.glob("*.ipynb") if path.stem != CHAPTERS)[0]
     ]
     dice = random.Random(f"class {seed}")
-    with contextlib.redirect_stdout(io.StringIO()):  # what a solution prints is for its author
+    # What a solution prints is for its author.
+    with contextlib.redirect_stdout(io.StringIO()):
         exercise = _Exercise(stems, folder)
     answers = _Answers(exercise, dice)
     out = Path(out)
@@ -514,7 +514,7 @@ def make_class(
     return _folders(out, files, "-and-".join(stems))
 
 
-# --- how it is handed out -----------------------------------------------------------------------
+# --- ways of handing it out ---------------------------------------------------------------------
 
 
 def _folders(out: Path, files: Mapping[str, bytes], name: str) -> Path:
@@ -530,7 +530,7 @@ def _folders(out: Path, files: Mapping[str, bytes], name: str) -> Path:
 
 
 def _gradebook(students: Sequence[str], worth: float) -> str:
-    """The gradebook of Canvas, with a student more who handed in nothing."""
+    """Return a Canvas gradebook, with one more student, who handed in nothing."""
     lines = [
         "Student,ID,SIS User ID,SIS Login ID,Section,Exercises (4711),Final Score",
         f"    Points Possible,,,,,{worth},(read only)",

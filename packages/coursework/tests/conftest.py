@@ -1,6 +1,4 @@
-"""What the tests of coursework share: a plug-in of their own, a process that has loaded what
-students' code imports, and a browser where they are run by themselves.
-"""
+"""Fixtures for the tests of coursework: a plug-in, loaded sandboxes, and a browser."""
 
 import contextlib
 import os
@@ -9,22 +7,22 @@ from pathlib import Path
 
 import pytest
 
-# A plug-in is found by what its distribution says of itself, here and
-# in the processes that tests start.
+# A plug-in is found by its distribution's metadata, both here and in the processes that tests
+# start.
 PLUGIN = str(Path(__file__).parent / "plugin")
 sys.path.append(PLUGIN)
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [os.environ.get("PYTHONPATH"), PLUGIN]))
 
 
 def pytest_configure(config):
-    # Where these are tests of a larger project, that has a browser for all.
+    # A larger project that contains these tests provides a browser for all of its tests.
     if config.rootpath == Path(__file__).resolve().parents[1]:
         config.pluginmanager.import_plugin("own_browser")
 
 
 @pytest.fixture(scope="session")
 def lent_sandboxes(tmp_path_factory):
-    """Two sandboxes for all tests, each with the file that says whether it is in use."""
+    """Two sandboxes for all tests, each with the file that shows whether it is in use."""
     if not sys.platform.startswith("linux"):
         yield []
         return
@@ -37,10 +35,10 @@ def lent_sandboxes(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def libraries_are_loaded_once(lent_sandboxes):
-    """Whoever grades a class loads SymPy for it, which takes seconds; here two processes have, for
-    all tests. One that dies, or whose user does, is not lent again.
+    """Lend each test a sandbox that has loaded SymPy, which takes seconds.
 
-    Not for tests of the sandbox itself, or of how it is started.
+    A sandbox that dies, or whose user does, is not lent again. Tests of the sandbox itself, or of
+    how it starts, do not get one.
     """
     if not lent_sandboxes:
         yield
@@ -54,7 +52,7 @@ def libraries_are_loaded_once(lent_sandboxes):
             for lent, place in lent_sandboxes:
                 if any(options.values()) or isolation.lacking(lent.report):
                     break
-                # Processes that grade side by side take one each.
+                # Processes that grade in parallel take one each.
                 with contextlib.suppress(FileExistsError):
                     place.touch(exist_ok=False)
                     self.__dict__.update(vars(lent), limits=limits or sandbox.Limits(), place=place)
@@ -68,7 +66,8 @@ def libraries_are_loaded_once(lent_sandboxes):
                 super().__exit__(kind, *error)
 
         def close(self):
-            if self.place:  # it is another process that ends it
+            # Another process ends it.
+            if self.place:
                 self.place = self.control = self.process = self.errors = self.base = None
             super().close()
 

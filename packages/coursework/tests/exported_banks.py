@@ -1,4 +1,4 @@
-"""Readers of Moodle XML and QTI for the tests, written from the formats and not from our writer."""
+"""Readers of Moodle XML and QTI for the tests, based on the formats and not on our writer."""
 
 import html
 import re
@@ -6,13 +6,13 @@ import xml.etree.ElementTree as ET
 import zipfile
 
 QTI = "{http://www.imsglobal.org/xsd/imsqti_v2p2}"
-#: A place of a cloze question, and in it an answer: what earns it, the answer and its reply.
+#: An entry of a cloze question, and in it an answer: its share of the points, text and reply.
 PLACE = re.compile(r"\{1:([A-Z]+):((?:[^}\\]|\\.)*)\}")
 ANSWER = re.compile(r"(=|%([\d.]+)%)?((?:&#?\w+;|[^~#])*)(?:#([^~]*))?", re.S)
 
 
 def of_moodle(file):
-    """The questions of a file by name, each a list of places, a place a list of answers."""
+    """Return the questions of a file by name, each a list of entries, each a list of answers."""
     questions = {}
     for question in ET.parse(file).getroot():
         if question.get("type") == "category":
@@ -46,7 +46,7 @@ def _of_cloze(kind, earns, percent, answer, reply):
 
 
 def marked_by_moodle(places, values):
-    """The share of the points that an answer earns, and all replies to it."""
+    """Return the share of the points that an answer earns, and all replies to it."""
     earned, replies = 0, ""
     for answers, value in zip(places, values, strict=True):
         for share, answer, tolerance, reply in answers:
@@ -63,7 +63,7 @@ def _same(answer, value, tolerance):
 
 
 def of_qti(file):
-    """The items of a package by title; the manifest must name all that the package holds."""
+    """Return the items of a package by title; its manifest must name all of its files."""
     with zipfile.ZipFile(file) as package:
         documents = {name: package.read(name) for name in package.namelist()}
     manifest = ET.fromstring(documents["imsmanifest.xml"])
@@ -76,7 +76,7 @@ def of_qti(file):
 
 
 def marked_by_qti(item, values):
-    """The share of the points that an answer earns, and the reply to it."""
+    """Return the share of the points that an answer earns, and the reply to it."""
     words = {
         (interaction.get("responseIdentifier"), choice.text): choice.get("identifier")
         for interaction in item.iter(f"{QTI}inlineChoiceInteraction")

@@ -1,4 +1,4 @@
-"""A browser for the tests of coursework, where they are run by themselves."""
+"""A browser for the tests of coursework when they run on their own."""
 
 import shutil
 
@@ -15,7 +15,7 @@ NAMES = (
 
 @pytest.fixture(scope="session")
 def browser():
-    """Headless Chromium; skipped with a reason where there is none."""
+    """Headless Chromium; without it, tests are skipped with a reason."""
     from playwright.sync_api import sync_playwright
 
     found = next(filter(None, map(shutil.which, NAMES)), None)

@@ -1,4 +1,4 @@
-"""For tests that seal questions themselves: nobody tries their keys, so these need not be slow."""
+"""Quick keys for tests that seal questions themselves, which nobody tries to open."""
 
 import pytest
 
@@ -7,9 +7,9 @@ from coursework.checking import sealing
 
 @pytest.fixture(autouse=True, scope="module")
 def keys_are_quick():
-    """A key of as many rounds as those of a released question is most of what such tests cost.
+    """Use few rounds for keys, which would otherwise take most of the time of such tests.
 
-    Whoever imports this has it; not for what is sealed or opened in another process.
+    Importing this is enough. It does not affect what another process seals or opens.
     """
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(sealing, "ROUNDS", 2)

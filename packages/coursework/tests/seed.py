@@ -1,10 +1,10 @@
-"""What tests draw, they draw from this seed, so that every run has the same verdict."""
+"""The seed from which all tests draw, so that every run has the same verdict."""
 
 SEED = "every day"
 
 
 def spread(cases, number):
-    """So many of the cases, spread evenly from the first to the last.
+    """Return so many of the cases, spread evenly from the first to the last.
 
     >>> spread("abcdefghij", 3), spread("abcdefghij", 1), spread("ab", 5)
     (['b', 'f', 'i'], ['f'], ['a', 'b'])

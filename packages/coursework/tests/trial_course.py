@@ -1,4 +1,4 @@
-"""A course of one notebook for the tests of authoring: its source, and where everything goes."""
+"""A course of one notebook for the tests of authoring."""
 
 from pathlib import Path
 
@@ -7,13 +7,13 @@ import nbformat
 from coursework.authoring.course import Course
 
 PROJECT = Path(__file__).resolve().parents[1]
-# Where this project is part of a book, that has the pins of all that is installed.
+# If this project is part of a book, the book pins the versions of everything installed.
 _PINS = PROJECT.parent / "constraints.txt"
 PINNED = {"PIP_CONSTRAINT": str(_PINS)} if _PINS.is_file() else {}
 
 
 def made_in(folder, sources=None, exercises=None, sealed=None):
-    """A course in a folder, or with some of its folders elsewhere."""
+    """Return a course in a folder, or with some of its folders elsewhere."""
     places = {"sources": sources, "exercises": exercises, "sealed": sealed}
     return Course(
         folder,

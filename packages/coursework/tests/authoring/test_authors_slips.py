@@ -1,6 +1,4 @@
-"""What an author forgets or misspells is refused before anything is
-released, in words that say what to do.
-"""
+"""An author's omissions and typos are refused before anything is released, with advice."""
 
 from pathlib import Path
 
@@ -258,7 +256,7 @@ def test_the_preview_shows_all_that_stands_above_a_question(tmp_path):
         page.index(part) for part in ("<h3>The heading</h3>", 'alt="A line"', "Add 1 to")
     )
     assert heading < figure < text and "Another heading" not in page and "{{n}}" not in page
-    # As wide as the screen of a telephone, and as dark as its reader wants it.
+    # It fits the screen of a telephone, and follows the reader's preference for a dark page.
     assert (
         'name="viewport"' in page and "color-scheme:light dark" in page and 'data-of="Kind"' in page
     )

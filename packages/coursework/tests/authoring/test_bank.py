@@ -1,4 +1,4 @@
-"""The questions for another system, read back and marked by readers of the tests' own."""
+"""The questions for another system, read back and marked by the tests' own readers."""
 
 import html
 import re
@@ -48,7 +48,7 @@ def judged_as_here(course, format, names, place):
 
 
 def values(answer):
-    """The entries of an answer, row by row, as a student types or chooses them."""
+    """Return the entries of an answer, row by row, as a student types or chooses them."""
     if isinstance(answer, str):
         return [answer]
     if hasattr(answer, "tolist"):
@@ -63,7 +63,7 @@ def is_number(value):
 
 
 def plainly(text):
-    """The letters of a reply outside of formulas, which each format writes in its own way."""
+    """Return the letters of a reply without formulas, which each format writes in its own way."""
     text = re.sub(r"\$[^$]+\$|\\\(.*?\\\)|<(\w+:)?math.*?</(\w+:)?math>", "", text)
     return re.sub(r"<[^>]*>|\W", "", html.unescape(text))
 
@@ -111,7 +111,7 @@ def test_signs_with_a_meaning_are_only_signs(odd, format, tmp_path):
     assert item.text.endswith("```python\ngiven = [7, 11]\n```")
     assert marked(question, ["=a~b#c", "x & {y}"])[0] == 1
     share, reply = marked(question, ["50% <z>", "x & {y}"])
-    # Moodle adds half of the first place and all of the second.
+    # Moodle adds half of the first entry and all of the second.
     assert share == {"moodle": 0.75, "qti": 0.5}[format]
     assert "Not ~ } # " in reply and "<code>=</code> &lt;b&gt;" in re.sub(
         r"\w+:(?=code)", "", reply

@@ -1,4 +1,4 @@
-"""A course of somebody else: made, released, tried and handed out without anything of this book."""
+"""Somebody else's course, made, released, tried and handed out without anything of this book."""
 
 import ast
 import csv
@@ -74,7 +74,7 @@ def test_nothing_is_written_over_by_a_new_course(statics):
 
 
 def test_a_release_from_the_wrong_folder_deletes_nothing(statics, tmp_path, monkeypatch):
-    """`release --sources MINE` in the folder of a course once deleted the exercises of that."""
+    """`release --sources MINE` in another course's folder once deleted that course's exercises."""
     write_source(tmp_path / "mine", *CELLS)
     shutil.copytree(statics / "exercises", tmp_path / "exercises")
     (tmp_path / "course.toml").write_text("")
@@ -117,7 +117,7 @@ def test_one_notebook_is_released_alone(tmp_path):
         ({"course.toml": "titel = 'Statics'"}, "course.toml: .*but not 'titel'"),
         ({"course.toml": "title = "}, "course.toml: .*Invalid value"),
         (
-            # As Git leaves it after a merge with conflicts.
+            # Git leaves this after a merge with conflicts.
             {"course.toml": "", "solutions/trial.ipynb": "<<<<<<< HEAD"},
             "solutions/trial.ipynb is not a notebook that we can read .*line 1",
         ),
@@ -180,14 +180,14 @@ def test_the_students_package_has_no_grader(tmp_path):
     }
 
 
-#: What is imported only where it is there, or only on request: a browser's own modules, a cluster,
-#: pictures in replies; and by type checkers alone, which bring it.
+#: Modules imported only where they exist, on request or by type checkers: a browser's own, a
+#: cluster, pictures in replies.
 ON_REQUEST = {"js", "pyodide_js", "distributed", "_typeshed"}
 OF_STUDENTS_ON_REQUEST = {"numpy", "latex2mathml"}
 
 
 def test_what_the_packages_import_they_ask_for():
-    """Also without what other packages happen to bring along."""
+    """They do not rely on what other packages happen to install."""
     belongs_to = metadata.packages_distributions()
     for name, (patterns, needs, _) in DISTRIBUTIONS.items():
         asked = {re.match(r"[a-z0-9-]+", need)[0] for need in needs}
@@ -219,9 +219,7 @@ def test_what_the_packages_import_they_ask_for():
 
 @pytest.mark.long
 def test_a_mended_package_has_another_version(tmp_path):
-    """What students hold is replaced by what is named otherwise: only what
-    is released has the plain version.
-    """
+    """Other contents have another version, so that pip replaces them; only a release's is plain."""
     shutil.copytree(
         Path(coursework.__file__).parent,
         tmp_path / "coursework",
@@ -271,7 +269,7 @@ def test_a_mended_package_has_another_version(tmp_path):
     os.utime(tmp_path / "coursework" / "grading" / "new.py", (1796202000, 1796202000))
     version, wheel_file = built(tmp_path)
     assert version == f"{next_version(stated)}.dev20261202090000"
-    # Whoever has installed it, and makes a course with it, hands out just that.
+    # An instructor who has installed it, and makes a course with it, hands out the same.
     with zipfile.ZipFile(wheel_file) as box:
         box.extractall(tmp_path / "installed")
     said = subprocess.check_output(
@@ -286,9 +284,7 @@ def test_a_mended_package_has_another_version(tmp_path):
 def test_where_nothing_can_be_written_the_selftest_says_so_first(
     statics, tmp_path, monkeypatch, capsys
 ):
-    """As in a checkout that belongs to somebody else; with another place for its
-    page it runs, and keeps nothing.
-    """
+    """With another path for its page, it runs and stores nothing."""
     course = shutil.copytree(statics, tmp_path / "course", ignore=shutil.ignore_patterns("build"))
     (course / "build").write_text("in the way")
     monkeypatch.chdir(course)
@@ -356,7 +352,7 @@ def test_an_update_brings_new_sealed_questions(statics, tmp_path):
         box.extractall(tmp_path)
     work = tmp_path / "exercises"
     (work / "first-steps.ipynb").write_text("mine")
-    (work / "manifest.json").unlink()  # as it was unpacked before there were manifests
+    (work / "manifest.json").unlink()  # It was unpacked before there were manifests.
     (work / "sealed" / "first-steps.json").write_text("older")
     said = update(find_course(statics).archive, work)
     assert "replaced    sealed/first-steps.json" in said
@@ -368,8 +364,9 @@ def test_an_update_brings_new_sealed_questions(statics, tmp_path):
 
 @pytest.mark.long
 def test_a_second_course_with_variants(tmp_path, monkeypatch):
-    """A notebook of plane statics, with questions in variants; the manual's own walk has an
-    environment that holds nothing of a book.
+    """A notebook of plane statics has questions in variants.
+
+    The test of the manual uses an environment with nothing of a book.
     """
     course = shutil.copytree(EXAMPLE, tmp_path / "plane-statics")
     monkeypatch.chdir(course)

@@ -1,6 +1,4 @@
-"""Numbers with their units, orders, lists that are right in part, texts that a
-person reads, plots of Matplotlib.
-"""
+"""Further kinds: numbers with units, orders, partly right lists, texts for a person, and plots."""
 
 import random
 from types import SimpleNamespace
@@ -41,9 +39,7 @@ def outcome(question, answer):
 
 
 def test_units_are_those_of_sympy():
-    """Each named unit against SymPy's own dimensions and factors; powers of
-    a product are sums of exponents.
-    """
+    """Compare each unit with SymPy's dimensions and factors, and powers of products."""
     from sympy.physics import units as theirs
 
     names = {
@@ -145,7 +141,7 @@ def test_a_symbol_of_the_name_of_a_unit_is_a_symbol():
 
 
 def test_the_unit_of_an_exam_is_not_told():
-    """What a student receives is the same for another unit."""
+    """Students receive the same for another unit."""
     one, other = (make("measurement", (3, unit), exam=True).sealed() for unit in ("kN m", "mm"))
     assert one == other
     reply = questions.judge("trial/one", one, to_plain((3, "kN m")))
@@ -178,7 +174,7 @@ def test_an_order_that_is_right_in_part_earns_its_share():
     question = make("order", PLANETS, options=sorted(PLANETS), partial=True, worth=10)
     assert share(question, PLANETS)[0] == 10
     points, said = share(question, ["Venus", "Mercury", *PLANETS[2:]])
-    # 0.9 beyond one half.
+    # The score is 0.9, of which one half is chance.
     assert points == 8 and said[-1] == "9 of 10 pairs are in the right order."
     assert share(question, PLANETS[::-1])[0] == 0
     alone = make("order", PLANETS, options=sorted(PLANETS), worth=10)
@@ -189,7 +185,7 @@ def test_who_guesses_a_list_earns_nothing_on_average():
     chance = random.Random(SEED)
     right = [chance.random() < 0.5 for _ in range(12)]
     truths = make("truth values", right, length=12, partial=True, worth=12)
-    # 9 of 12, beyond 6.
+    # 9 of 12 are right, of which 6 are chance.
     assert share(truths, [not right[0], not right[1], not right[2], *right[3:]])[0] == 6
     words = ["N", "N m", "Pa", "N/m"]
     answer = [chance.choice(words) for _ in range(8)]
@@ -202,7 +198,7 @@ def test_who_guesses_a_list_earns_nothing_on_average():
         _, parts, found = marking.parts_right(question, text)
         shares.append(found)
         assert parts == 8
-    assert sum(shares) / len(shares) < 0.1  # never below 0, so a little above it
+    assert sum(shares) / len(shares) < 0.1  # No share is below 0, so the mean is a little above it.
     with pytest.raises(author.AuthorError, match="can be `partial`"):
         make("expression", 3, partial=True)
 
@@ -386,5 +382,5 @@ def test_an_angle_times_a_unit_is_no_temperature():
 def test_a_unit_is_read_as_its_size_and_its_exponents(text, size, exponents):
     read_unit = unit(text)
     whole = (*exponents, *[0] * (len(BASE) - len(exponents)))
-    assert str(read_unit.exponents) == str(whole)  # whole numbers, as is said of them
+    assert str(read_unit.exponents) == str(whole)  # They must be whole numbers.
     assert abs(read_unit.size / evaluate.MP.mpf(size) - 1) < evaluate.MP.mpf(10) ** -38

@@ -1,4 +1,4 @@
-"""What is sealed of an answer is the same on every processor, however little it may be off by."""
+"""Seals of an answer are the same on every processor, even for a small tolerance."""
 
 import math
 import random
@@ -13,9 +13,7 @@ from coursework.checking.reading import Reading
 
 @pytest.mark.parametrize("tolerance", [5e-4, 5e-10, 5e-13])
 def test_the_last_bits_of_a_number_are_in_no_seal(tolerance):
-    """Beside an edge, rounding cannot but tip: that is seldom, and a release that
-    other machines compare tells of it.
-    """
+    """Rounding near an edge cannot be stable, but this is rare, and comparing releases shows it."""
     question, source = Question("expression", tolerance=tolerance), random.Random(1)
     moved = 0
     for _ in range(200):

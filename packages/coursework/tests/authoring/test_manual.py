@@ -1,6 +1,4 @@
-"""The manual for authors: its examples are questions that pass, and the
-replies that it prints are the real ones.
-"""
+"""The manual for authors: its examples are questions that pass, and its replies are real."""
 
 import csv
 import os
@@ -34,7 +32,7 @@ TEXT = re.search(r"```text\n(A child .*?)```", MANUAL, re.S)[1]
 
 
 def examples():
-    """Each example with its cells, and the replies that follow it."""
+    """Return each example with its cells, and the replies that follow it."""
     found = []
     for kind, about, text in BLOCK.findall(MANUAL):
         if kind == "example":
@@ -73,9 +71,7 @@ def test_the_manual_has_examples_of_most_kinds_and_names_all():
 
 @pytest.mark.long
 def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_path):
-    """From an empty folder to the marks, as one who has nothing but
-    the manual and the two packages.
-    """
+    """Go from an empty folder to the marks with only the manual and the two packages."""
     blocks = re.findall(r"```console\n(.*?)```", MANUAL, re.S)
     assert (
         "venv" in blocks[0]
@@ -85,10 +81,10 @@ def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_pa
         and len(blocks) == 7
     )
     blocks[0] = blocks[0].replace("REPOSITORY", shlex.quote(str(PROJECT.parents[1])))
-    # Nothing below opens JupyterLab, and to install it takes longer than all the rest.
+    # Nothing below opens JupyterLab, and installing it would take longer than everything else.
     blocks[0] = blocks[0].removesuffix(" jupyterlab\n")
     (tmp_path / "solve.py").write_text(SOLVE)
-    # What the manual says to do before questions are exported.
+    # The manual says to do this before exporting questions.
     (tmp_path / "choice.py").write_text(
         next(cells[0] for about, cells, _ in examples() if about == "a choice").replace(
             "manual/", "first-steps/"

@@ -1,6 +1,4 @@
-"""Variants of a question: drawn by rule, sealed one by one, and each
-student's own found without a server.
-"""
+"""Variants of a question: drawn by rule, sealed one by one, and found without a server."""
 
 import base64
 import collections
@@ -77,7 +75,7 @@ CELLS = [
 
 @pytest.fixture(autouse=True)
 def nobody_is_kept(monkeypatch, tmp_path):
-    """Who works in a test is not written down, and not in the next one."""
+    """Do not store who works in a test, so that the next test does not find it."""
     monkeypatch.setattr(identity, "KEPT", tmp_path / "no" / "such" / "me.txt")
 
 
@@ -119,7 +117,7 @@ def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number
     lever = coursework.variant("levers/see-saw")
     text = f"## See-saw\n\nA force of {lever.force} N acts {lever.arm} m from the hinge. "
     text += "Give its moment as moment, in N m."
-    # Whoever has not said who they are hears it where they would say it, and nowhere else.
+    # Students without an ID are told so where they would enter it, and nowhere else.
     assert repr(lever) == text
     assert coursework.check("levers/see-saw", lever.force * lever.arm).outcome == "correct"
     assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
@@ -132,7 +130,7 @@ def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number
 
 @pytest.mark.parametrize("roster", [False, True])
 def test_a_notebook_asks_for_an_id_where_the_course_has_a_roster(tmp_path, roster):
-    """It says once what forgetting it means; who learns alone meets nothing of it."""
+    """It says once what forgetting it means; students without a course never see it."""
     made = made_in(tmp_path)._replace(roster=roster)
     write_source(made.sources, *CELLS, name="levers")
     release(made, variants=[])
@@ -153,9 +151,7 @@ def test_whether_there_is_a_roster_is_true_or_false(tmp_path, value, roster):
 
 
 def test_a_classmates_answer_is_told_before_it_costs_anything(recorded, course):
-    """Pasted with the classmate's numbers, or worked out with everybody's: it is no
-    help, no try, and earns no hint.
-    """
+    """Copied, or computed with the default numbers, it is no help, is no try and earns no hint."""
     lever = coursework.variant(NAME)
     for other in (number for number in range(6) if number != 2):
         given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public.given
@@ -180,9 +176,7 @@ NUMBERS = {"": 0, "ada": 1, "eda": 2, "ida": 1}
 def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_of_others(
     first, monkeypatch, tmp_path
 ):
-    """All orders of answers, names (one of them mistyped, one of a classmate
-    with the same numbers) and editions.
-    """
+    """Try all orders of answers, editions and IDs (one mistyped, one with the same numbers)."""
     monkeypatch.setattr(progress, "KEPT", tmp_path / "progress.json")
 
     def question():
@@ -227,7 +221,7 @@ def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_
                 reply = coursework.check(NAME, numbers[0] * numbers[1])
                 right.add(numbers)
                 assert reply.outcome == "correct" and reply.tries == 1 + (numbers in slips), steps
-            # The file is read anew each time, as after a reload.
+            # Read the file again each time, as after a reload.
             own = EDITIONS[edition][NUMBERS[who]]
             kept = progress.Progress.read().entry(NAME)
             assert sum(one.outcome == "correct" for one in (kept, *kept.others)) == len(right), (
@@ -261,8 +255,8 @@ def test_how_many_pages_there_are_tells_no_variant_from_another(course, tmp_path
     known = [
         read_source(made.sources / "levers.ipynb", number).questions[NAME] for number in range(1, 6)
     ]
-    assert len({len(one.entries) for one in known}) > 1  # without that it would show nothing
-    # Nor are the empty ones found by whoever makes them anew from all that students have.
+    assert len({len(one.entries) for one in known}) > 1  # Otherwise this would prove nothing.
+    # Nobody can identify the empty ones by making them again from the data that students have.
     for one in (first, *rest):
         pages = one["pages"]
         for count in range(1, len(pages)):
@@ -291,7 +285,7 @@ def test_variants_are_different_fair_and_of_the_students_own(course):
         == variants.variant_of(f"student-{k}", "a/c", 16)
         for k in range(2000)
     ]
-    assert 60 < sum(same) < 200  # one in 16: what one question gives tells nothing of the next
+    assert 60 < sum(same) < 200  # One in 16: one question reveals nothing about the next.
     drawn = [
         json.dumps(Rule("a/b", 12, {"x": range(3), "y": range(4)}).parameters(number))
         for number in range(12)
@@ -300,9 +294,7 @@ def test_variants_are_different_fair_and_of_the_students_own(course):
 
 
 def test_empty_lockers_are_like_the_others_and_come_again(course):
-    """A second release gives the same; what the first one sealed is
-    all there, and opens as before.
-    """
+    """A second release gives the same; all that the first one sealed opens as before."""
     known = sorted(course.sealed.rglob("*.json"))
     before = {path: path.read_bytes() for path in known}
     release(course, run=False)
@@ -339,7 +331,7 @@ def test_answers_to_another_students_numbers_earn_nothing_and_are_flagged(course
 
 
 def test_a_known_mistake_is_named_also_where_it_is_right_for_other_numbers(tmp_path):
-    """It counted as a copy: a mistake with part of the credit earned nothing."""
+    """It once counted as a copy, so a mistake with partial credit earned nothing."""
     changed = {
         DRAWN: DRAWN.replace("count=6, force=[20, 30, 45, 65]", "count=2, force=[20]").replace(
             "arm=[2, 3, 7]", "arm=[2, 4]"
@@ -360,7 +352,7 @@ def test_a_known_mistake_is_named_also_where_it_is_right_for_other_numbers(tmp_p
     }
 
 
-# --- siblings: other numbers for one who had help ------------------------------------------------
+# --- siblings: other numbers after help ----------------------------------------------------------
 
 
 @pytest.fixture
@@ -383,7 +375,7 @@ def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorde
     )
     twin = coursework.variant(f"{NAME}/sibling")
     assert (twin.force, twin.arm) != (lever.force, lever.arm)
-    # The first sibling with a mistake, too: then there is one more, and no third.
+    # With a mistake in the first sibling, too, there is one more, and no third.
     coursework.check(f"{NAME}/sibling", twin.force + twin.arm)
     assert f"check('{NAME}/sibling-2'" in repr(
         coursework.check(f"{NAME}/sibling", twin.force * twin.arm)
@@ -455,7 +447,8 @@ def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_pa
         ({NAME: missing, first: right[first]}, {"own": "solution"}, 0, "by a sibling alone"),
         ({NAME: right[NAME], first: right[first]}, {"own": "solution"}, 1, "by a sibling"),
         ({NAME: missing}, {"own": "solution"}, 0, "missing"),
-        # The answer of one who has the numbers of the third one after one's own.
+        # This is the answer of somebody whose own numbers are those of this student's third
+        # sibling.
         (
             {NAME: right[NAME], f"{NAME}/sibling-3": right[second]},
             {"own": "hint"},
@@ -583,9 +576,7 @@ def test_the_archive_brings_all_variants_and_a_smaller_count_takes_them_away(cou
 
 
 def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch):
-    """Their pages follow upon those of the first variant, which another
-    machine's numbers had made others.
-    """
+    """Their pages continue those of the first variant, which differed on another machine."""
     made = made_in(tmp_path)
     solved = SOLVED.replace("moment =", "import os\nmoment = float(os.environ['MOVED_BY']) +")
     write_source(
@@ -631,7 +622,7 @@ def test_an_author_is_told(tmp_path, old, new, says):
 
 
 def test_a_variant_is_taken_out_and_the_others_need_not_be_counted(tmp_path):
-    """Where the count is that of all combinations, one that is ruled out left one too few."""
+    """When the count was that of all combinations, excluding one left too few."""
     made = made_in(tmp_path)
     where = "count=12, where=lambda drawn: drawn != {'force': 30, 'arm': 3}"
     cells = [(kind, text.replace("count=6", where)) for kind, text, *_ in CELLS]
@@ -642,9 +633,7 @@ def test_a_variant_is_taken_out_and_the_others_need_not_be_counted(tmp_path):
 
 
 def test_a_variant_with_a_fault_is_named_with_its_numbers(tmp_path):
-    """Of 2 N at 2 m the sum is the product: one variant in which a
-    mistake gives the right answer.
-    """
+    """For 2 N at 2 m, the sum is the product, so a mistake gives that variant's answer."""
     made = made_in(tmp_path)
     drawn = (
         DRAWN.replace("20, 30, 45, 65", "3, 2")

@@ -1,4 +1,4 @@
-"""What a check remembers, says and offers, whatever was judged: the judging is the test's own."""
+"""A check's records, replies and offers for any verdict; the tests provide the judging."""
 
 import sys
 from types import SimpleNamespace
@@ -11,7 +11,7 @@ from coursework.checking.question import KnownAnswer, Locker, Place, Question, S
 from coursework.checking.questions import OTHER_NUMBERS, code_text
 from coursework.checking.reply import Reply
 
-# The package gives the function of this name; the module is looked up.
+# The package exports the function under this name, so look up the module.
 check_module = sys.modules["coursework.checking.check"]
 check, hint = check_module.check, check_module.hint
 ARM, SAW, WORDS = "levers/arm", "levers/see-saw", "texts/words"
@@ -19,7 +19,7 @@ EARNS = "Each new answer earns you a hint."
 
 
 class Desk:
-    """Questions, their pages, and what is judged of an answer, by its text."""
+    """Questions with their pages, and the verdict on each answer by its text."""
 
     def __init__(self, patch):
         self.student, self.now, self.numbers = "ann", 10**9, {}
@@ -113,7 +113,7 @@ def entry_of(name=ARM):
     return Progress.read().entry(name)
 
 
-# --- what is remembered -------------------------------------------------------------------------
+# --- the record ---------------------------------------------------------------------------------
 
 
 def test_what_is_right_is_remembered_and_stays_right(desk):
@@ -265,7 +265,7 @@ def test_a_right_answer_opens_hints_for_later_questions(desk):
     for damaged in (
         {**desk.pages, place: 3},
         {later_place: desk.pages[later_place]},
-    ):  # of an earlier release
+    ):  # From an earlier release.
         desk.pages = damaged
         assert hint(SAW).messages == ["Hint: Again."]
 
@@ -282,7 +282,7 @@ def test_the_hints_of_the_last_mistake_come_first(desk):
     assert check(ARM, "half 3").messages[-1] == "Hint: Step one of expression 0."
     desk.pages = {place: {"cases": [{"outcome": "mistake"}]}}
     assert hint(ARM).messages[0] == "Hint 1: Step one of expression 0."
-    desk.pages = {}  # of an earlier release
+    desk.pages = {}  # From an earlier release.
     assert hint(ARM).messages[0] == "Hint 1: Step one of expression 0."
     for more in ({"known": known}, {"opened": Locker(place=place), "known": KnownAnswer("mistake")},
                  {"opened": Locker(place=place)}):  # fmt: skip

@@ -1,4 +1,4 @@
-"""What is said of an answer, to the letter, with lockers that are looked up without a slow hash."""
+"""Replies to answers, verbatim, with lockers that are found without a slow hash."""
 
 import hashlib
 import json
@@ -38,7 +38,7 @@ CORRECT = KnownAnswer("correct")
 
 
 def reply_to(question, lockers, answer, for_others=None):
-    """The outcome, the note and the words of a reply."""
+    """Return the outcome, the note and the words of a reply."""
     reply = compare(
         "a/b", question, to_plain(answer), (None if lockers is None else lockers.get), for_others
     )
@@ -81,7 +81,7 @@ FORM = "Otherwise: " + ALL_WRONG[:1].lower() + ALL_WRONG[1:]
         ([x, 0.47140452, 5], ("wrong", "rounded too far", NEARLY, DECIMALS)),
         ([x, 0.3, 5], ("wrong", "", f"{DECIMALS} {ALL_WRONG}")),
         ([x, sm.sqrt(2) / 3, 6], ("wrong", "", ALL_WRONG)),
-        ([x, sm.Rational(4714, 10000), 5], ("wrong", "", ALL_WRONG)),  # near, and not rounded
+        ([x, sm.Rational(4714, 10000), 5], ("wrong", "", ALL_WRONG)),  # Near, but not rounded.
         ([1, sm.sqrt(2) / 3, 6], ("wrong", "", NUMBERS_ONLY)),
         (["x", 1, 2], ("invalid", "shape")),
         (
@@ -128,7 +128,7 @@ def test_degrees_are_told_from_radians():
 
 
 def test_what_may_be_asked_in_degrees_is_not_told_of_them_falsely():
-    """Two degrees and 0.0349 are one number: a mistake in the one is none in the other."""
+    """Two degrees equal 0.0349, but a mistake in one unit is none in the other."""
     box = Question("vector", salt="s", tolerance=0.005, length=2)
     known = {text_of(box, [10, 0.2]): Locker((CORRECT,))}
     known[text_of(box, [0.17453, 0.035])] = Locker((mistake("The angle is in radians."),))
@@ -166,7 +166,7 @@ OFF = "off by more than the 0.01 that is allowed. If you rounded, here or earlie
 
 
 def rough(*answers):
-    """One locker for answers whose numbers lie in one cell."""
+    """Return one locker for answers whose numbers are in the same cell."""
     known = [
         KnownAnswer(known_answer.outcome, known_answer.notes, numbers=numbers_of(ROUGH, at))
         for known_answer, at in answers
@@ -222,7 +222,7 @@ def test_numbers_that_nearly_fit_together_may_be_rounded():
     exact = Question("vector", salt="s", unit_vector=True)
     assert reply_to(exact, {}, [0.577] * 3)[1:3] == ("not unit length", DECIMALS)
     assert reply_to(exact, {}, [sm.Rational(1, 2)] * 3)[1:] == wrong[1:]
-    # A mistake that is known comes first, and what is right only with its length.
+    # A known mistake comes first, and so does an answer that only its length excludes.
     for known, outcome in ((mistake("Known."), "wrong"), (CORRECT, "invalid")):
         locker = {text_of(exact, [1, 1, 0]): Locker((known,))}
         assert reply_to(exact, locker, [1, 1, 0])[0] == outcome
@@ -236,7 +236,7 @@ def test_of_decimal_fractions_some_are_plainly_exact_and_some_plainly_rounded():
         "0.0010010010010010010": (True, False), "0.0009990009990009990": (False, False),
         "12345.333333333334": (True, False), "0.50000000000015": (False, False),
         "0.1234567891234": (False, False), "0.12345678": (False, True), "1e10": (True, False),
-        # Of so large a square hardly any digit after the point is known.
+        # The square is so large that hardly any of its decimals are known.
         "12345.0000000005": (True, False), "123456.79": (False, True),
     }  # fmt: skip
     precision = {text: questions._precision({"nodes": [["float", text]]}) for text in texts}
@@ -262,7 +262,7 @@ def test_which_faults_of_the_form_no_right_value_makes_good(monkeypatch):
         assert reply == (expected if known else ("correct", ""))
 
 
-# ---- slips, exams, persons ---------------------------------------------------------------------
+# ---- slips, exams, people ----------------------------------------------------------------------
 
 
 def test_a_mistake_is_found_beside_a_slip():
@@ -285,7 +285,7 @@ def test_a_mistake_is_found_beside_a_slip():
     assert twice[:2] == ("wrong", "rounded too far") and "more than allowed" in twice[2]
     assert (
         reply_to(matrix, lockers, right.T)[1] == ""
-    )  # the transpose of what is right is no mistake
+    )  # The transpose of the right answer is no mistake.
     assert reply_to(matrix, lockers, 0.3333 * mistaken.T)[1] == ""
     reply = compare("a/b", matrix, to_plain(mistaken.T), lockers.get)
     assert reply.details == {"text": "Known."}
@@ -300,7 +300,7 @@ def test_a_mistake_is_found_beside_a_slip():
     lockers[text_of(matrix, rounded.T)] = Locker((mistake("Known."),))
     assert (
         reply_to(matrix, lockers, rounded)[1] == ""
-    )  # what was rounded is no mistake to the digit
+    )  # A rounded answer is no known mistake to the digit.
     exact = sm.Matrix([[1, 3], [0.5, 4]])
     lockers[text_of(matrix, exact.T)] = Locker((mistake("Known."),))
     assert reply_to(matrix, lockers, exact)[1] == "transposed, and authored"
@@ -337,12 +337,12 @@ def test_words_and_what_a_person_reads():
         assert reply.messages == [f"A person will mark this answer ({words})."]
 
 
-# ---- what is sealed ----------------------------------------------------------------------------
+# ---- sealed files -------------------------------------------------------------------------------
 
 
 @pytest.fixture(autouse=True)
 def quick(monkeypatch):
-    """The slow hash in one round."""
+    """Use one round of the slow hash."""
     monkeypatch.setattr(sealing, "ROUNDS", 1)
 
 
@@ -402,7 +402,7 @@ def test_codes_and_keys_stay_what_they_are():
 
 
 def varied(number, answer):
-    """A question in one of three variants, of which the right answers are known to each."""
+    """Return one of a question's three variants, which recognise each other's right answers."""
     salt = questions.salt_of_all("levers/arm")
     question = Question(
         "expression", f"s{number}",

@@ -1,4 +1,4 @@
-"""What each typical mistake does to an answer, and by which name a locker knows it."""
+"""The effect of each typical mistake on an answer, and its name in a locker."""
 
 import pytest
 import sympy as sm
@@ -27,7 +27,7 @@ def factors(answer):
 
 
 def symbols(answer):
-    """Of answers that hold x and y."""
+    """Return the mistakes in the symbols of an answer that contains x and y."""
     return [
         *(
             ("sign of a symbol", {"symbol": str(symbol)}, answer.subs(symbol, -symbol))
@@ -42,7 +42,7 @@ def symbols(answer):
 
 
 def plain(answer):
-    """The same without what goes with every number."""
+    """Return the mistakes that any number can have."""
     return [("opposite", {}, -answer), ("half", {}, answer / 2), ("double", {}, 2 * answer)]
 
 
@@ -240,7 +240,7 @@ def test_a_frame_is_no_matrix_that_mistakes_are_made_of():
 
 
 def test_the_names_in_the_lockers_are_what_they_were():
-    """Every file that was ever sealed depends on them."""
+    """Every sealed file depends on them."""
     assert short_name("sign of a symbol", {"symbol": "beta"}).hex() == "72eac791"
     assert short_name("Größe", {"b": 2, "a": 1}).hex() == "e3398e88"
 

@@ -1,4 +1,4 @@
-"""Answers as plain data, and their values: against SymPy, and against what is built to blow up."""
+"""Answers as plain data, with values compared with SymPy, and hostile answers that explode."""
 
 import json
 import random

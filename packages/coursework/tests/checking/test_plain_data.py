@@ -1,5 +1,6 @@
-"""The plain data itself: what is written of an answer, to the letter, since records keep it; what
-is read, against a grammar of its own; and where each border lies.
+"""Plain data: written answers verbatim, reading by an independent grammar, and all limits.
+
+Records store what is written, so it must not change.
 """
 
 import copy
@@ -34,12 +35,12 @@ class Unknown(sm.Function):
 
 
 def of_module(module, **members):
-    """An object of a class of some module, which need not be there."""
+    """Return an object of a class from some module, which need not exist."""
     return type("Stranger", (), {"__module__": module, **members})()
 
 
 def frames(count):
-    """What the book's own graph of frames offers: here all of them lie in a chain, but the last."""
+    """Return a stand-in for the book's graph of frames, in which all but the last form a chain."""
     names = [f"F{place}" for place in range(count)]
 
     def dcm(self, target, source):
@@ -52,7 +53,7 @@ def frames(count):
 
 
 def written(answer, calls=None):
-    """The data of an answer on one line: each part of it in place of the number of its node."""
+    """Return an answer's data on one line, with each part in place of its node's index."""
     data = read_plain(json.loads(json.dumps(to_plain(answer, calls))))
     messages = []
     for operation, *parts in data["nodes"]:
@@ -103,7 +104,7 @@ WRITTEN = [
     (sm.UnevaluatedExpr(sm.ImmutableMatrix([[1, x]])), f"1x2: {ONE} {X}"),
     (sm.UnevaluatedExpr(3 * units.meter), listed("integer(3)", ["text", "m^1"])),
     (type("L" * 70, (sm.Function,), {})(x), f"{'L' * 60}({X})"),
-    # What is an atom and has parts is no number: the second coordinate is not 1, nor a[1] a.
+    # An atom with parts is not a number: the second coordinate is not 1, and a[1] is not a.
     (sm.IndexedBase(x)[1], f"Indexed(IndexedBase({X}), {ONE})"),
     (sm.MatMul(sm.Integer(2), sm.Integer(2), sm.Identity(1)), "1x1: integer(4)"),
     (sm.Symbol("x", real=True), X),
@@ -224,12 +225,13 @@ def test_greek_letters_are_spelled_and_all_others_stay():
     for small, name in zip("αβγδεζηθικλμνξοπρστυφχψω", GREEK):
         assert written(sm.Symbol(small)) == f"symbol({name})"
         assert written(sm.Symbol(f"{small.upper()}_1")) == f"symbol({name.capitalize()}_1)"
-    # Cyrillic, Greek that is no letter, a letter without a name, and what is one in another form.
+    # Cyrillic, a Greek character that is no letter, a letter without a name, and another form of
+    # one.
     for letter, same in {"д": "д", "\u0375": "\u0375", "\ue000": "\ue000", "ℓ²": "l2"}.items():
         assert written(sm.Symbol(letter)) == f"symbol({same})"
 
 
-# ---- matrices whose products are worked out here -----------------------------------------------
+# ---- matrices whose products are computed here -------------------------------------------------
 
 
 def entries(matrix):
@@ -280,7 +282,7 @@ def test_products_and_inverses_of_matrices_are_those_of_sympy(size):
     assert entries(sm.MatPow(square, 1))[0] == entries(square)[0]
 
 
-# ---- borders -----------------------------------------------------------------------------------
+# ---- limits ------------------------------------------------------------------------------------
 
 
 def nested(depth):
@@ -288,7 +290,7 @@ def nested(depth):
 
 
 def neighbours(count):
-    """A frame with so many connected to it, itself among them."""
+    """Return a frame with so many connected ones, including itself."""
     first = me.ReferenceFrame("R0")
     for place in range(1, count):
         me.ReferenceFrame(f"R{place}").orient_explicit(first, sm.eye(3))
@@ -333,7 +335,7 @@ def test_what_waits_to_be_written_is_no_part_of_the_answer():
 
 
 class Nothing:
-    """Of a type with a name that goes on and on, longer than anybody would read."""
+    """An object whose type has a name longer than anybody would read."""
 
 
 class Odd(Nothing):
@@ -398,7 +400,7 @@ def test_what_takes_too_long_is_left_or_refused(monkeypatch):
     assert written([sm.Integral(x, (x, 0, bound)) for bound in (1, 2, 3)]) == listed(
         *["constant(Integral)"] * 3
     )
-    assert len(begun) == 2  # then it is not tried again
+    assert len(begun) == 2  # Then it is not tried again.
     with pytest.raises(NotPlain, match="matrix takes too long"):
         to_plain(sm.MatPow(numbers(2, 2, 1), 13))
     with pytest.raises(NotPlain, match="unit takes too long"):
@@ -412,7 +414,7 @@ def test_a_list_that_holds_itself_is_refused():
         to_plain(endless)
 
 
-# ---- reading, against a grammar of its own -----------------------------------------------------
+# ---- reading, by an independent grammar --------------------------------------------------------
 
 
 def is_node(node, place):
@@ -509,7 +511,7 @@ INSTEAD = [
 
 
 def changed(data):
-    """The data with one part at a time replaced, taken out, or doubled."""
+    """Iterate over the data with one part at a time replaced, removed or duplicated."""
     paths = [()]
     for path in paths:
         part = data

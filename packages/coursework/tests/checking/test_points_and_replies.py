@@ -1,6 +1,4 @@
-"""Where the symbols of a question are sampled, how a reply is shown, and
-how a page fetches what is sealed.
-"""
+"""The sampled values of symbols, the display of replies, and a page's requests for sealed files."""
 
 import itertools
 import math
@@ -28,7 +26,7 @@ SAMPLED = [
 
 
 def test_where_symbols_are_sampled_is_what_it_was():
-    """Every file that was ever sealed depends on it."""
+    """Every sealed file depends on it."""
     question = Question(
         "expression",
         salt="a",

@@ -1,4 +1,4 @@
-"""A question as data: every field is read as what it is, and written again."""
+"""A question as data: every field is read by its type, and written again."""
 
 import json
 from dataclasses import fields
@@ -53,7 +53,8 @@ def test_every_field_is_read_and_written():
     assert QUESTION.as_json() == OF_QUESTION | OF_VARIANT | OWN
     about = {field.name.replace("_", " ") for kind in (Question, Sealed) for field in fields(kind)}
     inner = {"question", "variant", "arguments"}
-    assert about - inner == OF_QUESTION.keys() | OF_SEALED.keys()  # a new field stands here, too
+    # A new field must be added here, too.
+    assert about - inner == OF_QUESTION.keys() | OF_SEALED.keys()
 
 
 def test_what_is_empty_is_left_out():
@@ -135,7 +136,7 @@ def test_what_a_locker_cannot_hold_is_said(about, message):
     assert str(error.value).startswith(message)
 
 
-# --- what is wrong is said where it stands --------------------------------------------------------
+# --- errors in their places -----------------------------------------------------------------------
 
 
 LEVER = {

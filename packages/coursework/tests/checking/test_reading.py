@@ -1,6 +1,6 @@
-"""What an answer of any form is read as, and what is said of one that is not of the form asked for.
+"""Reading answers of any form, and the messages about the wrong ones.
 
-Exactly as it is said: each word of a message depends on what was asked for and on what was given.
+The messages are compared verbatim, since each word depends on the question and the answer.
 """
 
 import itertools
@@ -352,7 +352,7 @@ def test_the_word_that_is_meant(question, answer, meant):
     assert read(question, answer) == Reading([], meant)
 
 
-# --- numbers with what they may be off by -------------------------------------------------------
+# --- numbers with tolerances ----------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -414,7 +414,7 @@ NEARLY = "near 69 -87"
 
 
 def test_where_the_cells_lie_is_what_it_was():
-    """Every file that was ever sealed depends on it."""
+    """Every sealed file depends on it."""
     answer = Reading([[MP.mpf(2), MP.mpf(-3)]])
     assert [reading.fingerprint(case, answer) for case in QUESTIONS] == WHERE
     assert reading.fingerprint(QUESTIONS[0], answer, near=True) == NEARLY
@@ -432,7 +432,7 @@ def test_the_cells_around_an_answer_hold_all_that_is_as_near(question, near):
         absolute, relative = (NEAR, NEAR) if near else reading.tolerances(question)
         cells = []
         for order, number in enumerate(numbers):
-            # As far as that on a scale on which each step is a tolerance.
+            # Move so far on a scale in which each step is a tolerance.
             growth = MP.exp(reach * relative) if relative else 0
             moved = []
             for sign in (-1, 1):

@@ -1,6 +1,4 @@
-"""What is sealed, to the letter: what students hold has to open
-for ever. And who gets which variant.
-"""
+"""Sealed data, verbatim, since students' files must open for ever, and the choice of variants."""
 
 import base64
 import hashlib

@@ -1,4 +1,4 @@
-"""A newer archive beside a student's work: what becomes of each file, and what is said of it."""
+"""A newer archive beside a student's work: what happens to each file, and the messages."""
 
 import json
 import os
@@ -100,7 +100,7 @@ def test_what_becomes_of_each_file(work, tmp_path):
     assert now == files | students_files | beside
     digests = {name: digest_of(name, data) for name, data in (files | beside).items()}
     assert known == digests | {OLD_WHEEL: digest_of(OLD_WHEEL, b"one")}
-    # Once more: everything is there already.
+    # A second time, everything is there already.
     again = update(archive, work)
     assert {line[:12] for line in again[:-1]} == {"the same    ", "kept yours  ", "changed     "}
     assert contents(work) | {"manifest.json": b""} == now | {"manifest.json": b""}
@@ -111,7 +111,7 @@ def test_what_is_put_beside_takes_no_other_files_place(work, tmp_path):
     for number, data in enumerate((b"two", b"three", b"four"), 1):
         archive = zipped(tmp_path / "new.zip", {"a.txt": data, "b.ipynb": notebook()})
         line = update(archive, work)[0]
-        # What was put there before and nobody has changed gives way; what somebody changed stays.
+        # An unchanged earlier addition is replaced, while one that somebody changed stays.
         place = 1 if number < 3 else 2
         assert line == f"kept yours  a.txt, and put the new version in a-new-{place}.txt"
         assert (work / f"a-new-{place}.txt").read_bytes() == data
@@ -124,7 +124,7 @@ def test_an_archive_without_a_folder_and_the_folder_where_one_is(work, tmp_path,
     inside = "exercises/sealed/variants/a-1.json"
     zipped(tmp_path / "flat.zip", {"a.ipynb": notebook(), inside: b"", NEW_WHEEL: b""}, folder="")
     (work / "sealed").rmdir()
-    (work / NEW_WHEEL.replace("py3", "py2")).write_bytes(b"")  # of the same version
+    (work / NEW_WHEEL.replace("py3", "py2")).write_bytes(b"")  # It has the same version.
     monkeypatch.chdir(work)
     assert update("../flat.zip")[:3] == [
         "added       a.ipynb",
@@ -168,9 +168,7 @@ def test_what_is_no_newer_archive_changes_nothing(make, words, work, tmp_path):
 
 
 def test_an_archive_of_before_takes_no_newer_ones_place(work, tmp_path):
-    """Nothing else says which is older: the package is the same in both,
-    and so are the times of the files.
-    """
+    """Nothing else shows which is older: the package and the files' times are the same."""
     files = [{"a.ipynb": notebook(word), NEW_WHEEL: b""} for word in ("one", "two", "three")]
     first, second, third = (
         zipped(tmp_path / f"{k}.zip", {**these, "manifest.json": manifest(these).encode()})
@@ -260,7 +258,7 @@ def test_the_extra_files_of_a_mac_are_left_out(work, tmp_path):
 
 
 def test_a_newer_download_beside_an_older_one_is_named(work, tmp_path):
-    """A browser numbers the second one, and its reader types the name that the README has."""
+    """A browser numbers the second one, and its reader types the name in the README."""
     old = zipped(tmp_path / "exercises.zip", {"one.ipynb": notebook("one")})
     new = zipped(tmp_path / "exercises (1).zip", {"one.ipynb": notebook("two"), ".DS_Store": b"0"})
     os.utime(old, (1, 1))

@@ -1,4 +1,4 @@
-"""The borders of what is worked out, and what is said beyond them."""
+"""The limits of evaluation, and the messages beyond them."""
 
 import pytest
 import sympy as sm
@@ -13,7 +13,7 @@ LARGEST = ["integer", "1" + 60 * "0"]
 
 
 def value(*nodes, **point):
-    """The number that the last of these nodes is; an operation is of the nodes before it."""
+    """Return the number of the last of these nodes; operations refer to earlier ones by index."""
     return evaluate.number(evaluate.values(nodes, point)[-1])
 
 
@@ -83,7 +83,7 @@ def test_what_has_no_value_is_told(error, message, nodes):
         ([["float", "25e-1"]], MP.mpf("2.5")),
         ([["float", "1e-999999"], ["log", 0]], -999999 * MP.log(10)),
         ([["float", f"0e{10**39}"]], 0),
-        # Of two parts that are far apart the smaller one is nothing.
+        # If two parts are far apart, the smaller one counts as zero.
         ([["float", "1e-9000"], I, ["Mul", 0, 1], ONE, ["Add", 2, 3]], 1),
         ([["float", "1e-9000"], I, ["Add", 0, 1]], MP.mpc(0, 1)),
     ],
@@ -121,7 +121,7 @@ def test_what_remains_of_a_part_that_cancels_is_measured_by_the_other_one():
 
 
 def test_no_function_is_given_what_it_is_not_made_for():
-    """Made anew: those of the module were made when it was read."""
+    """Make the functions anew, since the module made its own when it was imported."""
     cosine = evaluate._moderate(MP.cos)
     assert cosine(MP.mpf(10**6)) == MP.cos(10**6)
     with pytest.raises(TooLarge, match="^an argument larger than a million$"):
@@ -140,9 +140,7 @@ def test_nothing_to_the_power_of_nothing_is_one():
 
 @pytest.mark.parametrize(("operation", "count"), [("sin", 1_500), ("Add", 12_000), ("Mul", 12_000)])
 def test_complex_numbers_are_dearer(operation, count):
-    """Many times the time of real ones: what is enough for real
-    numbers is too much for complex ones.
-    """
+    """They take much longer than real ones, so what is allowed for these is too much for them."""
 
     def last(first):
         return evaluate.values([first, *([operation, 0] for _ in range(count))], {})[-1]

@@ -1,6 +1,4 @@
-"""What is written down beside a notebook, and what is read again of
-it: entry by entry, reader by reader.
-"""
+"""The records beside a notebook, as written and read, entry by entry and reader by reader."""
 
 import json
 from dataclasses import replace
@@ -60,7 +58,7 @@ def test_an_entry_is_written_as_it_was_read():
 @pytest.mark.parametrize("damaged", [True, {"1": 2}, [[]]])
 def test_a_field_that_is_not_what_it_should_be_is_as_if_it_were_not_there(name, damaged):
     without = {key: value for key, value in WHOLE.items() if key != name}
-    if name == "other variants" and damaged == {"1": 2}:  # what is no entry is an empty one
+    if name == "other variants" and damaged == {"1": 2}:  # An invalid entry counts as empty.
         without[name] = {"1": {}}
     assert Entry.from_json({**WHOLE, name: damaged}) == Entry.from_json(without)
     assert Entry.from_json(damaged if damaged is True else [damaged]) == Entry()
@@ -146,7 +144,7 @@ def test_a_folder_that_cannot_be_written_to_costs_the_record_only(folder):
     assert progress.entry("a/one") == ENTRY and Progress.read().entries == {}
 
 
-# --- who works here -----------------------------------------------------------------------------
+# --- the student's ID ---------------------------------------------------------------------------
 
 
 def test_who_works_here_is_said_once(folder, capsys):
@@ -160,12 +158,12 @@ def test_who_works_here_is_said_once(folder, capsys):
     identity.student()
     assert identity.identity() == monkey
     assert capsys.readouterr().out.startswith("You are still ann ä. The numbers below are yours.\n")
-    # The same name, stored in other characters, changes nothing; another name is told.
+    # The same name in other characters changes nothing, while another name causes a message.
     identity.student("Ann A\u0308\u200b.")
     assert "before" not in capsys.readouterr().out and identity.identity() == monkey
     identity.student("Anne Ä")
     assert "You are anne ä now, and were ann ä. before, " in capsys.readouterr().out
-    # Another notebook of the folder that asks nobody works with the same numbers.
+    # Another notebook in the folder that does not ask uses the same numbers.
     identity._identity = None
     assert identity.identity() == "anne ä"
 
@@ -188,7 +186,7 @@ def test_an_identity_that_cannot_be_kept_or_read_is_said_anew(folder):
 
 # --- readers ------------------------------------------------------------------------------------
 
-#: How to make readers.
+#: The functions that make readers.
 MAKES = {
     "many": lambda: fields.many(fields.number),
     "pair": lambda: fields.pair(fields.whole),

@@ -1,6 +1,4 @@
-"""A small course for the tests of grading: notebooks with
-solutions, and students who work on them.
-"""
+"""A small course for the tests of grading: notebooks with solutions, and students."""
 
 import copy
 import io
@@ -14,7 +12,7 @@ from coursework.grading.judging.journal import Journal
 from coursework.grading.judging.laboratory import settle
 from coursework.grading.running import Running
 
-#: So that what never ends is stopped soon, and a busy machine costs nobody an answer.
+#: These limits stop endless code soon, and cost nobody an answer on a busy machine.
 LIMITS = Limits(
     cell_seconds=2,
     cell_wall_seconds=60,
@@ -25,7 +23,7 @@ LIMITS = Limits(
 
 
 def grade_quietly(submissions, out, solutions, scheduler=None):
-    """Grade within these limits; what would be shown is dropped."""
+    """Grade within these limits, without output."""
     return grade(
         submissions,
         out,
@@ -36,7 +34,7 @@ def grade_quietly(submissions, out, solutions, scheduler=None):
 
 
 def contents(folder):
-    """Every file that depends on nothing but what was handed in."""
+    """Return every file that depends only on the submissions."""
     return {
         str(path.relative_to(folder)): path.read_bytes()
         for path in sorted(folder.rglob("*"))
@@ -120,7 +118,7 @@ SETUP = {"turns": SOURCES["turns"][1][1], "axes": SOURCES["axes"][0][1]}
 
 
 def notebook(cells):
-    """A notebook of cells: pairs of a kind and a source, or sources of code."""
+    """Return a notebook of cells, given as pairs of a kind and a source, or as sources of code."""
     made = nbformat.v4.new_notebook()
     for number, cell in enumerate(cells):
         kind, source = cell if isinstance(cell, tuple) else ("code", cell)
@@ -135,7 +133,7 @@ def notebook(cells):
 
 
 def write_sources(folder, changes=()):
-    """Write the notebooks with solutions; ``changes`` are pairs of texts to exchange."""
+    """Write the notebooks with solutions; ``changes`` are pairs of texts to replace."""
     folder.mkdir(exist_ok=True)
     for name, cells in SOURCES.items():
         changed = copy.deepcopy(cells)
@@ -156,10 +154,9 @@ def variable(name):
 
 
 def handed_in(assignment="turns", also=(), **answers):
-    """A student's notebook: right, but for the answers that are given by the
-    last part of their question's name.
+    """Return a student's notebook, right but for the answers given by the end of their name.
 
-    ``also`` are cells that come last.
+    ``also`` are cells at the end.
     """
     cells = [SETUP[assignment]]
     for name, right in RIGHT.items():
@@ -182,9 +179,7 @@ def give(store, *records):
 
 
 def write_term(out, roster=None, assignments=None, text=""):
-    """Write the term of a folder of marks: who is in the course, and
-    what each assignment consists of.
-    """
+    """Write the term in a folder of marks, with its roster and assignments."""
     folder = getattr(out, "folder", out)
     folder.mkdir(parents=True, exist_ok=True)
     lines = ['time-zone = "UTC"', *([f"roster = {json.dumps(str(roster))}"] if roster else [])]

@@ -1,6 +1,4 @@
-"""Decisions, appeals and lines of a rubric are events: what they come to
-is told, and nothing counts unseen.
-"""
+"""Decisions, appeals and changes of a rubric are events, and nothing counts before it was shown."""
 
 import csv
 import datetime
@@ -115,7 +113,8 @@ def test_an_appeal_goes_from_step_to_step_and_only_a_decision_accepts_it(out):
         journal.appeal(record, SUM, "Again.", who="Ann")
     first = state()
     journal.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=first.last, who="Ben")
-    with pytest.raises(Collision, match="has changed this appeal"):  # upon what was seen before
+    # It refers to the state before.
+    with pytest.raises(Collision, match="has changed this appeal"):
         journal.appeal(record, SUM, "No.", state=REJECTED, of=first, after=first.last, who="Ann")
     with pytest.raises(ValueError, match="the reason for rejecting the appeal"):
         journal.appeal(record, SUM, " ", state=REJECTED, of=first, after=state().last, who="Ann")
@@ -129,10 +128,10 @@ def test_an_appeal_goes_from_step_to_step_and_only_a_decision_accepts_it(out):
     journal.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=state().last, who="Ben")
     journal.append([late], collisions=True)
     assert state().state == "accepted" and Journal(out.folder).standing().decisions[key].credit == 1
-    # Undo is real: the mark is what it was, and the appeal waits again.
+    # Undoing restores the mark, and the appeal waits again.
     journal.take_back([record], SUM, "Ben")
     assert state().state == "under review" and key not in Journal(out.folder).standing().decisions
-    # Once it is closed, another one may be raised.
+    # Once it is closed, another may be raised.
     journal.appeal(record, SUM, "No!", state=REJECTED, of=first, after=state().last, who="Ann")
     journal.appeal(record, SUM, "I ask once more.", who="Ann")
     assert [one.state for one in Journal(out.folder).standing().appeals[key]] == [
@@ -146,7 +145,7 @@ def form(**fields):
 
 
 def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
-    """After an appeal 17 stayed where 18 was due."""
+    """After an appeal, 17 once stayed where 18 was due."""
     book = out.folder / "book.csv"
     book.write_text("Student,ID,SIS User ID,SIS Login ID,Section,Essays (7)\n" + "".join(
         f'"{name}",{number},,{name},x,\n' for number, name in enumerate(("ada", "ben", "cem"), 1)
@@ -161,9 +160,9 @@ def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
     with Served(out.folder, grader="Ann") as served:
         raised = form(form="appeal", state="raised", only=place, words=f"I am right {SCRIPT}")
         assert served.decide(cluster.id, raised).status == 303
-        assert served.decide(cluster.id, raised).status == 409  # nothing twice
+        assert served.decide(cluster.id, raised).status == 409  # Nothing is entered twice.
         long = form(form="appeal", state="raised", only=place, words="x" * 4_001)
-        assert served.decide(cluster.id, long).status == 409  # and nothing is cut off
+        assert served.decide(cluster.id, long).status == 409  # Nothing is cut off.
         _, text = served.ask(f"/{served.secret}/?show=appeals")
         assert (
             re.findall(r"answer/([0-9a-f]{16})", text) == [cluster.id] and "1 answer waits" in text
@@ -182,7 +181,7 @@ def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
         step = re.search(r'name="step" value="(\w+)"', page)[1]
         taken_up = form(form="appeal", state="under review", of=of, step=step, only=place, words="")
         assert served.decide(cluster.id, taken_up).status == 303
-        assert served.decide(cluster.id, taken_up).status == 409  # somebody was there before
+        assert served.decide(cluster.id, taken_up).status == 409  # Somebody else was faster.
         by_itself = form(form="appeal", state="accepted", of=of, step=step, only=place)
         assert served.decide(cluster.id, by_itself).status == 400
         accepts = form(credit=2, only=place, accepts="yes", comment="You are.")
@@ -280,7 +279,7 @@ def test_appeals_go_with_a_student_whom_a_roster_calls_something_else(begun, out
     assert again.standing().decisions["benjamin", "essays", SUM].credit == 1
 
 
-# --- what has changed since ---------------------------------------------------------------------
+# --- later changes ------------------------------------------------------------------------------
 
 
 def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_path, capsys):
@@ -288,13 +287,12 @@ def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_p
     Journal(out.folder).add(out.read("cem", "essays"), SUM, 0.5, who="Ann")
     options = {"solutions": begun / "solutions", "running": Running(limits=LIMITS)}
     regrade(out.folder, solutions=begun / "solutions", show=io.StringIO())
-    # A word of the text is no other question.
+    # Rewording the text does not make another question.
     reworded = write_essays(tmp_path / "reworded", text="Why is that so?")
     said = io.StringIO()
     regrade(out.folder, solutions=reworded, show=said)
     assert "changed since" not in said.getvalue()
-    # Handed in anew, the answer is judged anew, and what was decided on
-    # the earlier one is not forgotten.
+    # A resubmitted answer is judged again, and the decision on the earlier one is not forgotten.
     put(tmp_path / "in", "ben", answered("Since.", 7), "essays.ipynb")
     grade(tmp_path / "in", out.folder, show=said, **options)
     assert out.read("ben", "essays").points == 0
@@ -302,7 +300,7 @@ def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_p
         "1 decision is about an answer or a question that has changed since (ben)"
         in said.getvalue()
     )
-    # The question itself is mended: the decision counts, and somebody is to look.
+    # For a corrected question, the decision counts, and somebody should look.
     mended, said = write_essays(tmp_path / "mended", right="6"), io.StringIO()
     regrade(out.folder, solutions=mended, show=said)
     assert (
@@ -346,7 +344,7 @@ def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_pat
         )
         regrade(out.folder, solutions=solutions, show=io.StringIO())
         assert points_of(out) == {"ada": 5, "ben": 1, "cem": 1.5}
-        # On the page: who changes it says which value was seen.
+        # Whoever changes it on the page says which value they saw.
         cluster = cluster_of(out, ESSAY, "ada")
         _, page = served.ask(f"/{served.secret}/answer/{cluster.id}")
         worths = page.partition('value="worths"')[2].partition("</form>")[0]
@@ -366,7 +364,7 @@ def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_pat
         )
         assert served.decide(cluster.id, body).status == 303
         body = body.replace("points=0.5", "points=0.75")
-        assert served.decide(cluster.id, body).status == 409  # Ann saw what it was before
+        assert served.decide(cluster.id, body).status == 409  # Ann saw the earlier value.
         assert (
             served.decide(cluster.id, form(form="worths", line=says, points=9, step="-")).status
             == 400
@@ -379,8 +377,8 @@ def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_pat
         )
     regrade(out.folder, solutions=solutions, show=io.StringIO())
     assert points_of(out) == {"ada": 4.5, "ben": 1, "cem": 1.5}
-    # In the source: what it says last is newer than what the page said; nobody has
-    # more than all, or less than nothing.
+    # The source's latest value is newer than the page's; nobody has more than all points, or less
+    # than zero.
     mended = write_essays(tmp_path / "mended", {names: 3, says: 0.25, forgets: -3})
     changes = [
         change
@@ -392,7 +390,7 @@ def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_pat
     }  # fmt: skip
     regrade(out.folder, solutions=mended, show=io.StringIO())
     assert points_of(out) == {"ada": 5, "ben": 0, "cem": 1.25}
-    # Points that somebody gave by hand stay.
+    # Points that somebody entered by hand stay.
     Journal(out.folder).add(out.read("ada", "essays"), ESSAY, 1 / 3, who="Ben", rubric=[names])
     regrade(out.folder, solutions=solutions, show=io.StringIO())
     assert points_of(out)["ada"] == 3

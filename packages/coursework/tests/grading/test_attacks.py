@@ -1,6 +1,4 @@
-"""Every attack of the corpus fails, and costs nobody else
-anything; without its layer it succeeds.
-"""
+"""Every attack of the corpus fails and harms nobody else; without its layer, it succeeds."""
 
 import contextlib
 import ctypes
@@ -27,8 +25,8 @@ pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="student code runs on Linux only"
 )
 
-# What ends by processor time gets all the time it wants by the clock, so that a busy machine
-# changes nothing; what only the clock ends is run on its own.
+# Code stopped by processor time has ample wall time, so that a busy machine changes nothing. What
+# only wall time stops runs alone.
 LIMITS = Limits(
     cell_seconds=1,
     cell_wall_seconds=60,
@@ -48,7 +46,7 @@ HONEST = {"question": {"variable": None}}
 
 
 class Surroundings:
-    """What the attacks aim at: a file, a trap, three listeners, this process."""
+    """The targets of the attacks: a file, a trap, three listeners, and this process."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -71,7 +69,7 @@ class Surroundings:
         for file in self.outside.iterdir():
             file.unlink()
         self.canary.write_text("SEALED")
-        # Open to all users: if it stays untouched, that is not thanks to its mode.
+        # It is open to all users, so its mode is not what protects it.
         for path in (self.folder, self.outside):
             path.chmod(0o777)
         self.canary.chmod(0o666)
@@ -85,7 +83,7 @@ class Surroundings:
         )
 
     def heard(self):
-        """How many of the listeners have something waiting; takes it away."""
+        """Return how many of the listeners have something waiting, and take it away."""
         ready = select.select([self.tcp, self.udp, self.local], [], [], 0)[0]
         for listener in ready:
             if listener is self.udp:
@@ -134,8 +132,7 @@ def taken(result):
 
 @contextlib.contextmanager
 def attackable():
-    # Not pytest's own folder, which is closed to other users: that
-    # is not what must keep attacks out.
+    # Pytest's own folder is closed to other users, which must not be what keeps attacks out.
     folder = Path(tempfile.mkdtemp(prefix="attacked-"))
     folder.chmod(0o755)
     attacked = Surroundings(folder)
@@ -151,10 +148,8 @@ def surroundings():
 
 
 def suffer(answer):
-    """Run all attacks, each followed by an honest notebook, on two
-    workers; send what they left behind.
-    """
-    # Orphans become children of this process, so that none can hide.
+    """Run all attacks on two workers, each before an honest notebook; send what they left."""
+    # Make orphans children of this process, so that none can hide.
     assert ctypes.CDLL(None).prctl(36, 1, 0, 0, 0) == 0
     os.environ["TOKEN"] = "SEALED"
     results = {}
@@ -186,7 +181,7 @@ def suffer(answer):
 
 @pytest.fixture(scope="module")
 def aftermath():
-    """What all attacks left behind, in a process of their own: nobody else's children are there."""
+    """What all attacks left behind, in a process of their own without others' children."""
     spawn = multiprocessing.get_context("spawn")
     receiver, sender = spawn.Pipe(duplex=False)
     process = spawn.Process(target=suffer, args=(sender,))
@@ -208,7 +203,7 @@ def test_attack_ends_with_its_name_and_takes_nothing(attack, aftermath):
     if not attack.spoils:
         assert result["answers"]["after"].get("plain") == integer(2), "a later answer was lost"
     assert ("wrote into the records" in result["notes"]) >= attack.noticed
-    # Nothing but plain data came out.
+    # Only plain data came out.
     assert json.loads(json.dumps(result)) == result
     json.dumps(result, ensure_ascii=False).encode("utf-8")
 
@@ -233,9 +228,7 @@ UNPROTECTED = sorted({attack.without for attack in ATTACKS if attack.without})
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("layers", UNPROTECTED, ids=" and ".join)
 def test_attacks_succeed_without_their_layers(layers, surroundings):
-    """The same cells take the loot when the layers against them
-    are off: what stops them is known.
-    """
+    """The same cells succeed when the layers against them are off, so we know what stops them."""
     with Sandbox(LIMITS, allow_weak_isolation=True, without=layers) as sandbox:
         for attack in ATTACKS:
             if attack.without == layers:

@@ -1,6 +1,4 @@
-"""The same grading on a Dask cluster: no byte differs, and a
-captured worker reaches nobody but itself.
-"""
+"""Grading on a Dask cluster: no byte differs, and a captured worker harms nobody but itself."""
 
 import contextlib
 import functools
@@ -35,9 +33,7 @@ pytestmark = [
 
 @contextlib.contextmanager
 def cluster(folder, workers=1, preload=None, keys=()):
-    """The scheduler and workers of a cluster, in processes of their
-    own: its address and its processes.
-    """
+    """Start the scheduler and workers of a cluster, and return its address and its processes."""
     place = folder / "scheduler.json"
     address = ["--scheduler-file", str(place)]
     local = ["--host", "127.0.0.1", "--no-dashboard", *keys]
@@ -92,7 +88,7 @@ def test_a_cluster_that_loses_a_worker_changes_no_byte(submissions, solutions, t
     def lose_a_worker():
         while not over.wait(0.01):
             if list((there / "records").glob("*/*.json")):
-                # The command that was started waits for the worker, which is below it.
+                # The worker is a child of the command that was started.
                 victims = [processes[1], *psutil.Process(processes[1].pid).children(recursive=True)]
                 lost.extend(victims)
                 for victim in victims:
@@ -110,7 +106,7 @@ def test_a_cluster_that_loses_a_worker_changes_no_byte(submissions, solutions, t
             killer.join()
     assert lost and said["graded"] == 7
     assert contents(there) == contents(here)
-    # The journal says besides when marks were given, and names each line by chance.
+    # The journal also has the time of marks, and random IDs of its lines.
     given_there, given_here = (
         {key: given.marks for key, given in Journal(folder).standing().given.items()}
         for folder in (there, here)
@@ -162,7 +158,7 @@ cluster.run_job = run_job
     ],
 )
 def test_what_a_captured_worker_sends_is_read_as_strictly_as_what_a_notebook_sends(damage):
-    # Not before it is known that Dask is there.
+    # Import it only when we know that Dask is installed.
     from coursework.grading.execution import cluster as of_a_cluster
 
     job = {"id": "1", "cells": [], "questions": {"turns/sum": {}}}
@@ -192,15 +188,15 @@ def test_a_lost_scheduler_is_said_and_nothing_is_lost(
 ):
     from coursework.grading.execution import cluster as running
 
-    monkeypatch.setattr(running, "CONNECT_WITHIN", "8s")  # it is given up after as long
-    # The last of all by its name: it is at work when the scheduler is lost, and not yet recorded.
+    monkeypatch.setattr(running, "CONNECT_WITHIN", "8s")  # It gives up after this time.
+    # The last by name is at work, and not yet recorded, when the scheduler is lost.
     put(submissions, "takes-long", handed_in(sum="import time\ntime.sleep(20)\nsine = 0"))
     out, over = tmp_path / "out", threading.Event()
 
     def lose_the_scheduler():
         while not over.wait(0.01):
             if len(list((out / "waiting").glob("*/*.json"))) >= 2:
-                # The command that was started may wait for the scheduler, which is below it.
+                # The scheduler may be a child of the command that was started.
                 for victim in [
                     processes[0],
                     *psutil.Process(processes[0].pid).children(recursive=True),
@@ -250,7 +246,7 @@ def test_a_cluster_that_is_not_there_is_said(submissions, solutions, tmp_path, m
 
 @pytest.mark.long
 def test_a_cluster_listens_to_those_alone_who_have_its_key(tmp_path, submissions):
-    """An open scheduler runs anybody's code, on all of its machines."""
+    """An open scheduler runs anybody's code on all of its machines."""
     keys = tmp_path / "keys"
     assert cluster_keys.make_keys(keys) and not cluster_keys.make_keys(keys)
     assert all(path.stat().st_mode & 0o077 == 0 for path in (keys, keys / cluster_keys.KEY))

@@ -1,6 +1,4 @@
-"""Questions of an exam: nothing that a student has tells whether an answer
-is right, and the grader marks it.
-"""
+"""Questions of an exam: only the grader, and nothing students have, shows what is right."""
 
 import io
 import json
@@ -70,7 +68,7 @@ def test_what_students_receive_would_be_the_same_with_another_answer(tmp_path):
         and sealed["lockers"] == ""
         and not {"pages", "ladder", "every symbol"} & set(sealed)
     )
-    # The same question with a check is another file for another answer.
+    # With a check, the same question has a different file for another answer.
     local = plain.replace("exam=True, ", "")
     assert (
         len(
@@ -89,7 +87,7 @@ def test_the_check_takes_an_answer_down_and_tells_nothing_of_it(exam):
         for answer in (RIGHT, RIGHT.T, RIGHT.subs(theta, 2 * theta))
     ]
     assert {reply.outcome for reply in replies} == {"recorded"}
-    # What was read is the student's own.
+    # The answer as read is the student's own.
     assert len({str(reply).partition("\nWe read: ")[0] for reply in replies}) == 1
     assert "marked later" in replies[0].messages[0]
     assert checks.check("trial/about-x", 2 * RIGHT).outcome == "invalid"
@@ -126,7 +124,7 @@ def test_the_grader_marks_what_the_check_only_took_down(exam, tmp_path):
     ]
 
 
-#: A function that looks through the frames of all who call it.
+#: A function that searches the frames of all its callers.
 LOOKING = """
 import sys
 seen = []
@@ -141,8 +139,9 @@ def twice(x):
 
 
 def test_a_function_finds_in_its_callers_frames_only_what_the_exam_gave_it(tmp_path):
-    """The calls of the check are in the sealed file that every student has; others there are none
-    in the notebook's process, as long as it can still hand in an answer.
+    """Students' sealed file has the check's calls, and the notebook's process no others.
+
+    It receives others only when it can no longer hand in an answer.
     """
     folder = tmp_path / "course"
     folder.mkdir()

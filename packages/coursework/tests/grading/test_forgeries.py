@@ -1,6 +1,4 @@
-"""Nobody's work counts as another's, and no answer earns more than it
-is worth: the corpus of forgeries.
-"""
+"""The corpus of forgeries: no work counts as another's, and no answer earns more than its worth."""
 
 import io
 import re
@@ -34,7 +32,7 @@ GOOD = nbformat.writes(handed_in()).encode()
 
 
 def lay_out(place, attack, in_archive):
-    """Put what was handed in into a folder, or into an archive as the systems make it."""
+    """Put submissions into a folder, or into an archive like a system's."""
     files = {name: GOOD for name in attack.handed_in if ".zip/" not in name} | dict(attack.also)
     within = {}
     for name in attack.handed_in:
@@ -74,7 +72,7 @@ def test_nothing_is_given_to_anybody_else(tmp_path, attack, in_archive):
         assert found == {
             name: owner for name, owner in attack.handed_in.items() if name not in leading_out
         }
-        # A notebook that nobody can be given is named, and not left out in silence.
+        # A notebook that cannot be matched to anybody is reported, not silently left out.
         nobodys = {name for name in attack.also if name.endswith(".ipynb")}
         assert leading_out | nobodys <= {one.file for one in refused}
 
@@ -83,9 +81,7 @@ def test_nothing_is_given_to_anybody_else(tmp_path, attack, in_archive):
 
 
 def cell_of_what_is_known(questions):
-    """What a student may find out: where the check looks, and what a
-    friend's right answer comes to there.
-    """
+    """Return a cell with what students may know: the check's points and a friend's values."""
     places = points(questions["turns/sum"][0].question)
     calls = [call[0] for call in questions["turns/doubled"][0].question.calls]
     with MP.workdps(40):
@@ -99,7 +95,7 @@ def cell_of_what_is_known(questions):
 
 @pytest.fixture(scope="module")
 def records(tmp_path_factory):
-    """The class of those who forge, and one who does not, graded."""
+    """The graded records of a class of forgers and one honest student."""
     place = tmp_path_factory.mktemp("forgers")
     solutions = write_sources(place / "solutions")
     known = cell_of_what_is_known(questions_of(solutions / "turns.ipynb", b"any secret"))
@@ -145,7 +141,7 @@ def test_an_answer_that_is_not_right_earns_nothing(records, attack):
 
 
 def test_many_of_them_pass_the_check_that_a_student_has(records):
-    """They are no straw men: only where nobody can look are they told from right answers."""
+    """These forgeries are real: only secret comparison distinguishes them from right answers."""
     notes = [mark.note for record in records.values() for mark in record.marks.values()]
     assert notes.count("right only where it is checked") >= 12
 
@@ -154,9 +150,7 @@ def test_many_of_them_pass_the_check_that_a_student_has(records):
 
 
 def marks_of(folder, **identities):
-    """Marks of a class whose students are known by their folders alone, or
-    by what a system or a roster says.
-    """
+    """Return the marks of a class known by folders alone, or by a system's or roster's names."""
     store = Store(folder)
     for student, about in identities.items():
         called = {kind: value for kind, value in about.items() if kind != "own"}
@@ -180,14 +174,14 @@ OF_MOODLE = (
 @pytest.mark.parametrize(
     "book, students, filled",
     [
-        # Whoever comes first has no better claim.
+        # Being first is no better claim.
         (OF_CANVAS, {"Bob": {}, "bob": {}, "eve": {}}, ["eve"]),
         (OF_CANVAS, {"eve": {"own": ["eve"]}, "other": {"own": ["EVE"]}}, []),
         (OF_CANVAS, {"b\u043eb": {}}, []),
-        (OF_CANVAS, {"2": {}}, []),  # a name is no number of Canvas
-        # The system's number is surer than a name.
+        (OF_CANVAS, {"2": {}}, []),  # A name is not Canvas's ID.
+        # The system's ID is more reliable than a name.
         (OF_CANVAS, {"bob": {"canvas": "9", "own": ["bob"]}}, []),
-        (OF_MOODLE, {"robert": {}, "bob": {}}, ["bob"]),  # who is called so at home
+        (OF_MOODLE, {"robert": {}, "bob": {}}, ["bob"]),  # Eve has this address elsewhere.
         (OF_MOODLE, {"bob@mail.example": {"email": "bob@mail.example", "own": []}}, []),
         (OF_MOODLE, {"x": {"email": "ann@uni.example", "own": []}, "ann": {}}, []),
     ],
@@ -246,7 +240,7 @@ def test_records_of_two_lie_in_two_places_on_every_system():
     for place in places:
         assert place.partition(".")[0] not in ("con", "nul", "aux", "com1", "lpt9", "prn")
         assert re.fullmatch(r"[a-z0-9_][a-z0-9._-]*", place) and place.rstrip(". ") == place
-    # Long enough that nobody finds a second name for the place of another's record.
+    # The digest is long enough that nobody finds a second name for another's record.
     assert len(file_name("Bob Smith").rpartition("-")[2]) * 4 >= 80
 
 
@@ -271,7 +265,7 @@ def test_a_name_begins_no_line_of_its_own(tmp_path):
 
 
 def test_at_least_so_many_kinds_have_been_tried():
-    """The corpus in numbers: by names, by answers, by taking what decides for right."""
+    """Count the corpus by kind: by names, by answers, and by deceiving a comparison."""
     by_names, by_answers, by_deceit = (
         names.ATTACKS,
         answers.ATTACKS,

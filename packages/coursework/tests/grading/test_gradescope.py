@@ -1,6 +1,4 @@
-"""The autograder for Gradescope, whole: in a machine laid out as Gradescope's,
-with nothing of this one but Python.
-"""
+"""The whole Gradescope autograder, on a machine laid out like Gradescope's with only our Python."""
 
 import json
 import os
@@ -28,9 +26,7 @@ needs_a_machine = pytest.mark.skipif(not IMITATED, reason="the machine is imitat
 
 @pytest.fixture(scope="module")
 def machine(tmp_path_factory):
-    """A folder that is ``/autograder`` there: unpacked, and set up with
-    the packages of this environment.
-    """
+    """A folder to become ``/autograder``, unpacked and set up with this environment's packages."""
     place = tmp_path_factory.mktemp("gradescope")
     home = place / "autograder"
     (place / "roster.csv").write_text("student,name,email\nann,Ann Right,ann@uni.example\n")
@@ -49,8 +45,7 @@ def machine(tmp_path_factory):
         subprocess.run(["bash", "-n", home / "source" / name], check=True)
         (home / "source" / name).chmod(0o755)
     shutil.copy(home / "source" / "run_autograder", home)
-    # In place of what setup.sh installs: the very files that these
-    # requirements brought here, and nothing else.
+    # In place of what setup.sh installs, use exactly the installed files of these requirements.
     venv.create(home / "venv", with_pip=False, symlinks=True)
     (site,) = (home / "venv" / "lib").glob("python*/site-packages")
     (site / "autograder.pth").write_text("/autograder/source/packages\n")

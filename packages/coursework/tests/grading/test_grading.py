@@ -1,6 +1,4 @@
-"""A class is graded: every notebook on its own, nothing lost or done
-twice, the same wherever it is run.
-"""
+"""Grading a class: every notebook on its own, nothing lost or done twice, the same everywhere."""
 
 import csv
 import dataclasses
@@ -69,7 +67,7 @@ SCRIPT = "<script>alert(1)</script>"
 
 
 def students():
-    """The notebooks of a class by student: each is right in all that it does not name."""
+    """Iterate over a class's notebooks by student, each right except for what is given."""
     yield "right", handed_in()
     yield (
         "mistaken",
@@ -135,15 +133,13 @@ def course(tmp_path_factory):
 
 @pytest.fixture
 def copied(course, tmp_path):
-    """A copy of the results, to change."""
+    """A copy of the results, for changes."""
     return shutil.copytree(course / "out", tmp_path / "out")
 
 
 @pytest.fixture
 def prepared(course, tmp_path):
-    """A folder for results that has the questions already: working them
-    out again is not what is tested.
-    """
+    """A folder for results with the processed questions, whose processing is not tested here."""
     shutil.copytree(course / "out" / "questions", tmp_path / "out" / "questions")
     return tmp_path / "out"
 
@@ -161,19 +157,19 @@ def outcomes(course, student):
     return [mark.outcome for mark in record(course, student).marks.values()]
 
 
-# ---- what each notebook gets
+# ---- the result of each notebook
 
 
 @pytest.mark.parametrize(
     "student, expected, points",
     [
         ("right", ["correct"] * 3, 6),
-        # Half of two for the transpose, by its author's word.
+        # The author gives half of two points for the transpose.
         ("mistaken", ["wrong", "wrong", "correct"], 4),
         ("blank", ["not attempted"] * 3, 0),
         ("broken", ["correct", "not attempted", "correct"], 5),
         ("leaves", ["correct", "not attempted", "correct"], 5),
-        ("endless", ["correct", "undecided", "correct"], 5),  # it may have been lost to the limit
+        ("endless", ["correct", "undecided", "correct"], 5),  # It may have been lost to the limit.
         ("no-checks", ["correct"] * 3, 6),
         ("backwards", ["not attempted", "correct", "not attempted"], 1),
         ("nearly", ["correct", "undecided", "correct"], 5),
@@ -489,7 +485,7 @@ def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
     said = grade_quietly(course / "submissions", out, course / "solutions")
     assert 3 <= done < 15 and said == {"graded": 15 - done, "kept": done, "refused": 3, "held": 0}
     lines = graded_lines(out)
-    # The last one may have been recorded and not yet logged when the run was killed.
+    # The last may have been recorded but not yet logged when the run was killed.
     assert len(set(lines)) == len(lines) and len(lines) in (14, 15)
     assert contents(out) == contents(course / "out")
 
@@ -505,7 +501,7 @@ def test_a_second_time_nothing_is_run(course, copied, monkeypatch):
 
 
 def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypatch):
-    """Classmates are judged by the same code: a change anywhere in the two packages is one."""
+    """Classmates are judged by the same code, so any change in the two packages counts."""
     from coursework.grading import versions
 
     copies = [
@@ -528,7 +524,7 @@ def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypat
     assert len(digests) == 5
     path.rename(path.with_name("another.py"))
     assert versions.digest_of_packages(copies) not in digests
-    shutil.rmtree(copied / "records" / "endless")  # it takes long, and is not what is tested
+    shutil.rmtree(copied / "records" / "endless")  # It takes long and is not tested here.
     few = shutil.copytree(course / "submissions" / "right", tmp_path / "few" / "right").parent
     monkeypatch.setattr(versions, "folders", lambda: copies)
     versions.software.cache_clear()
@@ -545,7 +541,7 @@ def test_a_second_assignment_in_one_folder_can_be_judged_again(course, copied, t
     said = grade_quietly(few, copied, course / "solutions")
     assert said["graded"] == 1
     assert regrade(copied, solutions=course / "solutions").moves == []
-    # What the term calls otherwise is another assignment.
+    # A renamed assignment in the term is another assignment.
     write_term(copied, assignments={"other": ["turns"]})
     with pytest.raises(NothingToGrade, match="no assignment 'axes'; choose from other"):
         regrade(copied, solutions=course / "solutions")
@@ -568,9 +564,7 @@ def test_a_renamed_folder_does_not_leave_the_old_student(course, copied, tmp_pat
 def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else(
     course, copied, tmp_path
 ):
-    """Names of folders first, a roster afterwards: two handed in the same,
-    and each keeps the own decision.
-    """
+    """A roster follows folder names; two handed in the same, and each keeps the right decision."""
     few, same, shown = tmp_path / "few", handed_in(sum="sine = sm.cos(alpha)"), io.StringIO()
     for name in ("b", "c"):
         put(few, name, same)
@@ -593,7 +587,7 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     handed_on = {one.student: one for one in Journal(copied).by_people}
     assert (handed_on["somebody"].who, handed_on["somebody"].why) == ("Ann", "appeal; was 'b'")
     assert handed_on["somebody"].when == handed_on["b"].when
-    # Whoever is not in the roster any more has not become the other who handed in the same.
+    # Somebody who left the roster has not become the other student who handed in the same.
     roster.write_text("student,name\nthird,c\n")
     grade(few, copied, show=shown, **options)
     assert (
@@ -601,7 +595,7 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
         and "'somebody' is now" not in shown.getvalue()
     )
     (copied / "term.toml").unlink()
-    # Folders that are renamed, too: nobody knows which is which.
+    # If folders are renamed, too, nobody knows which is which.
     for name in ("b", "c"):
         (few / name).rename(few / f"{name}{name}")
     grade(few, copied, show=shown, **options)
@@ -699,9 +693,7 @@ def test_feedback_leads_to_the_chapter_and_to_a_solution_that_is_released(course
 
 
 def test_feedback_gives_no_outputs_of_calls_away(course):
-    """What a function returned to the check would do for a friend's answer, and the
-    secret calls for all later ones.
-    """
+    """A function's results would help a friend, and those of the secret calls everybody later."""
     found = record(course, "right").answers["turns/doubled"]
     assert found.plain["value"][0] == found.secret["plain"]["value"][0] == "function"
     said = page(course, "right")
@@ -713,7 +705,7 @@ def test_feedback_gives_no_outputs_of_calls_away(course):
 
 
 class Stub:
-    """In place of a sandbox: every notebook is blank, but for those under which something dies."""
+    """A stand-in for a sandbox, in which every notebook is blank or dies."""
 
     def __init__(self, *arguments, **options):
         pass
@@ -853,12 +845,12 @@ def test_tables_of_decisions_are_read_as_spreadsheets_leave_them(
     lost, row = rows_of(copied / "undecided.csv")
     assert (lost["student"], lost["why"]) == ("endless", "lost to a limit")
     assert (row["student"], row["question"], row["credit"]) == ("nearly", "turns/sum", "")
-    # A digest without a letter, or with an e alone, would come back as 2.38954E+11.
+    # Without the sign, a spreadsheet would turn a digest with no letter but an e into 2.38954E+11.
     assert row["id"][0] == row["version"][0] == "#"
     path, store, journal = tmp_path / "decided.csv", Store(copied), Journal(copied)
     path.write_text(table.format(**row), "utf8")
     assert journal.take_in_table(path, store.all(), "Ann") == (not unused, unused)
-    assert journal.take_in_table(path, store.all(), "Ann") == (0, unused)  # once
+    assert journal.take_in_table(path, store.all(), "Ann") == (0, unused)  # Only once.
     bring_in_decisions(copied)
     assert store.read("nearly", "turns").points == points
     left = [row["student"] for row in rows_of(copied / "undecided.csv")]
@@ -878,7 +870,7 @@ def marks(course):
 
 
 def fill(tmp_path, marks, text, **options):
-    """Fill a gradebook, and return what is said and the lines of the filled one."""
+    """Fill a gradebook, and return the messages and the lines of the filled one."""
     (tmp_path / "book.csv").write_text(text, "utf8")
     said = gradebooks.fill(tmp_path / "book.csv", marks, **options)
     return "\n".join(said), (tmp_path / "book-filled.csv").read_text("utf8").splitlines()
@@ -953,7 +945,7 @@ def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(
 
 
 def test_what_stands_in_a_gradebook_stays_unless_told(marks, tmp_path):
-    """Canvas's EX excuses a student; a mark that a person entered is not lost unsaid."""
+    """Canvas's EX excuses a student, and a manually entered mark is not lost silently."""
     text = (
         "Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\nA,1,,right,,EX\n"
         "B,2,,mistaken,,5.00\n"
@@ -969,7 +961,7 @@ def test_what_stands_in_a_gradebook_stays_unless_told(marks, tmp_path):
     said, again = fill(tmp_path, marks, text, overwrite=["mistaken", "right"], dry_run=True)
     assert "We wrote nothing" in said and again == after
     said, after = fill(tmp_path, marks, text, overwrite=["mistaken", "right"])
-    # An excuse is none that could be written over; a mark by hand is, of whom it is said.
+    # An excuse is never overwritten. A manually entered mark is, for the students named.
     assert [line.rpartition(",")[2] for line in after[1:]] == ["EX", "4", "0", "6"]
     assert "mistaken: 5.00 -> 4" in said.partition("overridden as you asked")[2]
     with pytest.raises(gradebooks.CannotExport, match="'nobody', who is not in"):
@@ -1021,7 +1013,7 @@ def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
 
 
 def test_a_gradebook_of_canvas_with_names_in_two_columns_and_other_numbers(marks, tmp_path):
-    """Its columns are English everywhere; numbers are as the language writes them."""
+    """Its columns are always in English, while its numbers follow the language."""
     text = (
         "\ufeffLastName;FirstName;ID;SIS Login ID;Section;Turns (7)\n"
         "    Points Possible;;;;;12,00\n"
@@ -1085,10 +1077,10 @@ def test_a_gradebook_that_cannot_be_filled_is_said(marks, tmp_path, header, mess
     assert message in str(error.value)
 
 
-# ---- from a system's download to what it takes back
+# ---- from a system's download to what it accepts
 
-#: The notebook's name as a student may have chosen it, which each system keeps
-#: at the end of its own name for it.
+#: Names of a notebook that a student may have chosen, which each system keeps at the end of its
+#: own.
 CHOSEN = ("turns.ipynb", "my_2_turns_linked.ipynb", "work.zip")
 
 
@@ -1100,7 +1092,7 @@ def packed(data):
 
 
 def download(system, students):
-    """What a system hands out: the archive's files by name, and the gradebook."""
+    """Return a system's download: the archive's files by name, and the gradebook."""
     files, lines = {}, []
     for number, (student, data) in enumerate(students, 101):
         chosen = CHOSEN[number % 3]
@@ -1131,9 +1123,7 @@ def download(system, students):
 
 
 def canvas_takes(name, uploads):
-    """Whom Canvas gives a file of an archive to, as its
-    ``infer_comment_context_from_filename`` does.
-    """
+    """Return a file's student, like Canvas's ``infer_comment_context_from_filename``."""
     parts = name.rpartition("/")[2].split("_")
     numbers = [part for part in parts if re.fullmatch("[0-9]+", part)][:2]
     return (
@@ -1144,7 +1134,7 @@ def canvas_takes(name, uploads):
 
 
 def moodle_takes(name, participants):
-    """Whom Moodle gives a file of an archive to, as its ``is_valid_filename_for_import`` does."""
+    """Return a file's student, like Moodle's ``is_valid_filename_for_import``."""
     if name.rpartition("/")[2].startswith((".", "~")):
         return None
     for part in name.split("/"):
@@ -1212,7 +1202,7 @@ def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(
         elif system == "moodle":
             student = moodle_takes(name, numbered)
         else:
-            # Brightspace: the folder as it was handed out, at the top.
+            # Brightspace needs the folder as it was handed out, at the top.
             assert name.count("/") == 1 and any(
                 file.startswith(name.partition("/")[0] + "/") for file in files
             )
@@ -1271,7 +1261,7 @@ def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
         for name, (outcome, note) in ({} if refused else about["questions"]).items():
             mark = found.marks[name]
             if any(did.startswith("hostile") for did in about["did"]):
-                # It may have spoilt its own, and gained nothing.
+                # It may have spoilt its own answers, but gained nothing.
                 assert not mark.points or outcome != "not attempted"
             else:
                 assert mark.outcome == outcome and (not note or mark.note == note), (

@@ -1,6 +1,4 @@
-"""Judging is bounded, whatever was answered; whenever the machine goes down,
-nothing is lost and nothing done twice.
-"""
+"""Judging is bounded for any answer, and a crash at any time loses nothing and repeats nothing."""
 
 import hashlib
 import json
@@ -36,7 +34,7 @@ def questions(tmp_path_factory):
 
 
 def ordinary(dice, depth=0):
-    """An expression as students write them; its numbers may be tiny or huge."""
+    """Return an expression like a student's, in which numbers may be tiny or huge."""
     if depth > 3 or dice.random() < 0.25:
         size = dice.choice([1, 1, 10, 1e-3, 1e-30, 1e30, 1e-300, 1e300])
         number = sm.Float(dice.uniform(-3, 3) * size)
@@ -71,7 +69,7 @@ def ordinary(dice, depth=0):
 
 
 def judged(answers, questions, folder):
-    """What a judge of its own says of each of these answers; a record holds one."""
+    """Return a new judge's marks of these answers, each in its own record."""
     said = []
     with Judge({"turns": {NAME: questions[NAME]}}, Contracts(folder), said.append) as judge:
         for number, plain in enumerate(answers):
@@ -91,7 +89,7 @@ def test_ordinary_answers_are_judged_in_bounded_time_and_memory(questions, tmp_p
             answers.append(to_plain(ordinary(dice)))
         except NotPlain:
             pass
-    # None takes so much that the judge has to be ended: that would be said.
+    # None takes so much that the judge must be ended, which would be reported.
     outcomes = {mark.outcome for mark in judged(answers, questions, tmp_path)}
     assert (
         outcomes <= {"wrong", "invalid", "undecided", "correct"}
@@ -100,7 +98,7 @@ def test_ordinary_answers_are_judged_in_bounded_time_and_memory(questions, tmp_p
 
 
 def _tower(dice, what):
-    """An answer of many nodes each of which is made to cost much."""
+    """Return an answer of many nodes, each made to cost much."""
     nodes = [
         ["symbol", "alpha"],
         ["constant", "ImaginaryUnit"],
@@ -146,11 +144,10 @@ def test_hostile_answers_leave_every_other_mark(questions, tmp_path):
     assert not any(mark.points for mark in found[::3])
 
 
-# --- the machine goes down ----------------------------------------------------------------------
+# --- crashes ------------------------------------------------------------------------------------
 
-#: A process that has everything loaded, and for each line that it reads begins a copy of itself,
-#: which is killed after a time, or comes to its end; it gives back what the copy said and how long
-#: it took.
+#: A process with everything loaded. For each line that it reads it forks a copy, which is killed
+#: after a time or runs to its end, and it returns the copy's output and duration.
 PROGRAM = """
 import io, json, os, select, signal, sys, time, traceback, warnings
 sys.path.insert(0, {tests!r})
@@ -221,9 +218,7 @@ for line in sys.stdin:
 
 @pytest.fixture(scope="module")
 def run():
-    """Run a command in a copy of a process; what it said, of which a part is
-    missing if it was killed, and its time.
-    """
+    """Run a command in a copy of a process; return its output, partial if killed, and its time."""
     program = PROGRAM.format(tests=str(Path(__file__).parent))
     with subprocess.Popen(
         [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
@@ -247,13 +242,13 @@ def run():
 
 def _contents(folder):
     return {
-        # What was refused is written down under the folder that was handed in.
+        # Refused files are listed under the submitted folder.
         str(path.relative_to(folder)): hashlib.sha256(
             path.read_bytes().replace(str(folder.parent.resolve()).encode(), b"")
         ).hexdigest()
         for path in folder.rglob("*")
         if path.is_file()
-        # The page of moves is that of the last run: what moved before stands in the journal.
+        # The page of changes is that of the last run; the journal has the earlier ones.
         and path.name not in ("run.log", "lock", "journal.jsonl", "regrade.html")
         and not path.name.startswith(".half-")
     }
@@ -261,7 +256,7 @@ def _contents(folder):
 
 @pytest.fixture
 def whole(tmp_path):
-    """A class and its sources, as they lie when nothing was graded yet."""
+    """A class and its sources before anything is graded."""
     from test_terms_as_stories import WEIGHTS, Story
 
     questions = tmp_path / "questions"
@@ -284,9 +279,7 @@ def whole(tmp_path):
 
 @pytest.mark.long
 def test_whenever_it_is_killed_the_same_comes_of_it(whole, tmp_path_factory, run, kills=6):
-    """Five commands, each killed so many times at moments drawn by
-    lot, and then let come to its end.
-    """
+    """Five commands are each killed several times at random moments, then allowed to finish."""
     dice = random.Random("killed 0")
     other = Path(shutil.copytree(whole, tmp_path_factory.mktemp("other") / "course"))
     for what in ("grade", "regrade", "review", "bring in", "export"):
@@ -296,7 +289,7 @@ def test_whenever_it_is_killed_the_same_comes_of_it(whole, tmp_path_factory, run
             run(other, what)
             assert _contents(other / "out") == _contents(whole / "out"), what
             continue
-        # What somebody was told is there, once; a line that was cut off does not stop anything.
+        # Whatever somebody was told is there, once; a line cut off does not stop anything.
         kept = [one.id for one in Journal(other / "out").events]
         assert len(kept) == len(set(kept)) and set(said) <= set(kept)
         whole_ledger = Journal(whole / "out")

@@ -1,6 +1,4 @@
-"""What a student was asked is kept beside the answer: a mended
-question takes nobody's marks by chance.
-"""
+"""Questions stored beside their answers, so that correcting one costs nobody marks by accident."""
 
 import dataclasses
 import io
@@ -48,7 +46,7 @@ STUDENTS = [f"student-{number:02}" for number in range(14)]
 
 
 def beams(weights, calls="[[1.5], [-2.0], [0.25]]"):
-    """A notebook with solutions: a question with a variant for each weight, and a function."""
+    """Return a solution notebook with a function and a question with a variant for each weight."""
     return notebook(
         [
             "import sympy as sm\nfrom coursework import check, student, variant\nstudent('')",
@@ -91,9 +89,7 @@ def answered(load, says="", function="def twice(x):\n    return x + x"):
 
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory):
-    """A class whose students all gave the right answer to their
-    own numbers, and one who did not.
-    """
+    """A class in which all but one student answered right for their own numbers."""
     place = tmp_path_factory.mktemp("cases")
     solutions = write_beams(place / "solutions", WEIGHTS)
     questions = questions_of(solutions / "beams.ipynb", b"any")
@@ -116,11 +112,11 @@ def marks_of(store, name):
 
 
 def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
-    """What a function returned was compared by position: all right functions fell from 3 to 0."""
+    """Results were once compared by position, so all right functions fell from 3 to 0."""
     fewer = write_beams(tmp_path / "fewer", WEIGHTS, "[[0.25], [1.5]]")
     regrade(out.folder, solutions=fewer)
     found = marks_of(out, "beams/twice").values()
-    # All that is called now was called then; but other secret calls follow from other calls.
+    # The current calls were all made then, but other calls also change the secret ones.
     assert {(mark.outcome, mark.note) for mark in found} <= {
         ("correct", ""),
         ("undecided", "not called"),
@@ -150,7 +146,7 @@ def test_a_function_is_judged_by_the_calls_that_it_was_given():
 
 
 def test_an_answer_is_reviewed_beside_the_question_of_its_own_student(begun, out):
-    """The page showed variant 0's right answer for everybody."""
+    """The page once showed variant 0's right answer for everybody."""
     graded = Class(out.folder)
     seen = set()
     for cluster in graded.clusters.values():
@@ -170,9 +166,7 @@ def test_an_answer_is_reviewed_beside_the_question_of_its_own_student(begun, out
 
 
 def test_small_numbers_with_long_exponents_cost_neither_time_nor_memory():
-    """One line of plain SymPy took the judge two minutes for a node, and 1.7
-    GB for each 10^9 in the exponent.
-    """
+    """A line of SymPy once cost two minutes a node, and 1.7 GB for each 10^9 in an exponent."""
     tiny = sm.Pow(
         sm.Add(sm.Pow(sm.Float("1e-99999"), 9_999, evaluate=False), sm.I, evaluate=False),
         sm.Float("1e-300"),
@@ -182,7 +176,7 @@ def test_small_numbers_with_long_exponents_cost_neither_time_nor_memory():
     found = evaluate.values(to_plain(tiny)["nodes"], {})[-1]
     assert isinstance(found, (evaluate.NotSupported, evaluate.MP.mpf, evaluate.MP.mpc))
     for text in ("1e-99999999999999999999", "3.5e+99999999999999999999", "1e-2000"):
-        # And not "no answer was found".
+        # The reason must not be "no answer was found".
         plain = read_plain({"value": ["expression", 0], "nodes": [["float", text]]})
         assert isinstance(
             evaluate.values(plain["nodes"], {})[0],
@@ -191,7 +185,7 @@ def test_small_numbers_with_long_exponents_cost_neither_time_nor_memory():
     assert evaluate.values([["float", "2.5e-2000"]], {})[0] * evaluate.MP.mpf(
         10
     ) ** 2000 == evaluate.MP.mpf("2.5")
-    # A part that no digit depends on is left out; the other one stays.
+    # A part that affects no digit is left out, and the other one stays.
     nodes = [
         ["float", "1e-9000"],
         ["constant", "ImaginaryUnit"],
@@ -251,7 +245,7 @@ def test_an_answer_that_stops_the_judge_costs_nobody_else_a_mark(monkeypatch, tm
 
 
 def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun, tmp_path):
-    """With the roster forgotten a class fell from 16 to 9 of 21 points, and nothing was said."""
+    """With the roster forgotten, a class once fell silently from 16 to 9 of 21 points."""
     for student in STUDENTS[:6]:
         put(
             tmp_path / "in",
@@ -312,7 +306,7 @@ def test_a_journal_that_ends_within_a_line_is_read_and_goes_on(tmp_path, left):
         "Cem",
     ] and not again.said_of_cut()
     assert (tmp_path / CUT).read_bytes() == second[:left] + b"\n"
-    # A line that only an editor left without its end is whole.
+    # A line whose end only an editor removed is complete.
     path.write_bytes(whole[:-1])
     assert len(Journal(tmp_path).by_people) == 2 and not Journal(tmp_path).said_of_cut()
     Journal(tmp_path).add(RECORD, "turns/sum", 0, who="Cem")
@@ -358,9 +352,7 @@ def test_what_holds_right_answers_is_read_by_nobody_else(out):
 
 
 def test_a_friends_answer_under_the_names_of_siblings_earns_no_more_than_chance(begun):
-    """One of eight has the same numbers; with two siblings it was three, and
-    with four variants three of four.
-    """
+    """One of eight has the same numbers; with two siblings it was once three, or three of four."""
     questions = questions_of(begun.place / "solutions" / "beams.ipynb", b"any")
     earned, asked = 0, {NAME: questions[NAME]}
     friends = Answer("recorded", to_plain(2 * WEIGHTS[3]))
@@ -375,7 +367,7 @@ def test_a_friends_answer_under_the_names_of_siblings_earns_no_more_than_chance(
     assert earned == 2  # of 16
 
 
-# --- what was handed in -------------------------------------------------------------------------
+# --- submissions --------------------------------------------------------------------------------
 
 
 def _png(size=(2, 2)):
@@ -455,7 +447,7 @@ def test_what_cannot_be_read_or_written_is_named(tmp_path, submissions, out, sai
 
 
 def test_a_namespace_of_one_user_is_named_as_the_cause(monkeypatch):
-    """It was "Errno 22"."""
+    """The message was once "Errno 22"."""
     monkeypatch.setattr("os.geteuid", lambda: 0)
     assert isolation.user_for_students(4242, "0 0 4294967295\n") == 4242
     assert isolation.user_for_students(4242, "0 1000 1\n65534 100000 1\n") == isolation.OUTSIDER
@@ -479,8 +471,8 @@ def test_by_name_a_variant_that_is_taken_out_moves_only_those_who_had_it():
             for one in students:
                 after = [order[k] for k in numbers_of_variants(one, NAME, about, 7)]
                 assert after == [name for name in before[one] if name != names[gone]]
-    # Another edition, another question, another student: another
-    # order. Capitals and spaces make none.
+    # Another edition, question or student has another order; capitals and spaces make no
+    # difference.
     assert numbers_of_variants("ann", NAME, whole, 8) == numbers_of_variants(" Ann", NAME, whole, 8)
     others = dataclasses.replace(whole, edition="")
     assert (
@@ -528,9 +520,7 @@ def mended(folder, exchanged, weights=WEIGHTS, **more):
 
 
 def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
-    """A mended solution is judged from what is stored; a mended call is
-    run, for those who are asked it.
-    """
+    """A corrected solution judges stored answers; a corrected call runs for those asked it."""
     said = io.StringIO()
     options = {"running": Running(limits=LIMITS), "show": said}
     solutions = mended(tmp_path / "mended", ("2*beam.weight", "7*beam.weight"))
@@ -548,7 +538,7 @@ def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
 
 
 def test_the_figure_of_a_question_is_seen_in_the_review(tmp_path):
-    """It stands in the students' notebook as a picture, beside variants, too."""
+    """The students' notebook has it as a picture, beside variants, too."""
     made = beams(WEIGHTS)
     figure = (
         "from types import SimpleNamespace as S\nS(alt='A beam', picture=lambda: '<svg "

@@ -1,4 +1,4 @@
-"""Whatever is handed in is read strictly, named when refused, and left as it was."""
+"""Every submission is read strictly, reported when refused, and left unchanged."""
 
 import codecs
 import hashlib
@@ -35,7 +35,7 @@ def folder(tmp_path):
 
 
 def the_refused(path):
-    """Why each file was refused; the neighbour's notebook must be read all the same."""
+    """Return the reason for each refusal; the neighbour's notebook must be read nevertheless."""
     notebooks, refused = intake.take_in(path, ["turns"])
     assert [one.student for one in notebooks] == ["neighbour"]
     return {one.file: one.why for one in refused}
@@ -46,7 +46,7 @@ def archive(path, *entries):
         for name, data in (("neighbour/turns.ipynb", GOOD), *entries):
             if isinstance(name, str):
                 info = zipfile.ZipInfo()
-                # As it is, also if it leads astray.
+                # Set the name unchanged, even if it leads elsewhere.
                 info.filename, info.compress_type = (name, zipfile.ZIP_DEFLATED)
                 name = info
             box.writestr(name, data)
@@ -63,7 +63,7 @@ def archive(path, *entries):
         ("student-017/work/turns.ipynb", "student-017", {}, False),
         ("student-017.ipynb", "student-017", {}, False),
         ("student-017_turns.ipynb", "student-017", {}, False),
-        # As browsers save what they do not know.
+        # Browsers save unknown types like this.
         ("student-017/turns.ipynb.txt", "student-017", {}, False),
         ("student-017_turns.ipynb.json", "student-017", {}, False),
         ("turns (student-017).ipynb", "student-017", {}, False),
@@ -130,9 +130,7 @@ def test_two_numbers_in_a_students_own_file_are_not_taken_for_canvas(folder):
 
 
 def named(*names, **options):
-    """The students that an archive's names give notebooks to, and the
-    files that nobody's are, with why.
-    """
+    """Return the students by an archive's names, and the refused files with reasons."""
     path = options.pop("path")
     with zipfile.ZipFile(path, "w") as box:
         for name in names:
@@ -146,13 +144,11 @@ def box(tmp_path):
     return tmp_path / "class.zip"
 
 
-#: Names as the systems themselves write them, each from the source of the system
-#: or from what was downloaded of it.
+#: Names as the systems themselves write them, from a system's source or its downloads.
 DOWNLOADED = {
     # Canvas: `get_filename` and `add_upload_submission` in lib/content_zipper.rb of
-    # instructure/canvas-lms. The name to sort by in small letters without signs, LATE, the number
-    # of the student, that of the file.
-    # README of mikewesthad/canvas-unzipper
+    # instructure/canvas-lms. The lower-case name to sort by, without punctuation, LATE, the
+    # student's ID, and the file's.
     "doejohn_340934_208490284_BobsWork.ipynb": ("doejohn_340934", "", False),
     "doejane_LATE_334244_394803489_MyAssignment-1.ipynb": ("doejane_334244", "", True),
     "m\xfcllerj\xf6rg_101_5_01_turns.ipynb": ("m\xfcllerj\xf6rg_101", "", False),
@@ -160,7 +156,7 @@ DOWNLOADED = {
     "anon_aB3dE_501_turns.ipynb": ("anonymous_aB3dE", "", False),
     "LATE_anon_xY4zF_502_turns.ipynb": ("anonymous_xY4zF", "", True),
     # Moodle: `download_submissions` in mod/assign/locallib.php of moodle/moodle, in folders and
-    # flat, with groups, and with names hidden in several languages.
+    # flat, with groups, and with hidden names in several languages.
     "THIRD STUDENT NAME_10019166_assignsubmission_file_/JURNAL1.ipynb": (
         "THIRD STUDENT NAME 10019166", "", False),
     "Vorname Nachname_1327627_assignsubmission_file_/turns.ipynb": (
@@ -171,19 +167,19 @@ DOWNLOADED = {
         "Default group-Jane Doe 77", "", False),
     "Participant_1234_assignsubmission_file_/turns.ipynb": ("Participant 1234", "", False),
     "Teilnehmerin_1235_assignsubmission_file_/turns.ipynb": ("Teilnehmerin 1235", "", False),
-    # Brightspace: downloads that several graders' own tools describe, with the
-    # folder around them or without it.
+    # Brightspace: downloads that several graders' own tools describe, with or without the enclosing
+    # folder.
     "152711-351765 - Some Student - May 18, 2025 1224 PM/turns.ipynb": (
         "Some Student 152711", "2025-05-18T12:24:00", False),
     "39786-640693 - Another Student - Oct 10, 2025 1022 AM/turns.ipynb": (
         "Another Student 39786", "2025-10-10T10:22:00", False),
-    # Blackboard: README of kwurst/bb-file-cleanup and of others; the name of an
-    # assignment may hold blanks and signs.
+    # Blackboard: README of kwurst/bb-file-cleanup and others. An assignment's name may contain
+    # spaces and punctuation.
     "Project 3  Reverse Engineering_abc0124_attempt_2015-04-23-17-56-20_abc0124-P3.ipynb": (
         "abc0124", "2015-04-23T17:56:20", False),
     "Project 3  Reverse Engineering_abc0123_attempt_2015-02-12-21-30-34_Assignment_1.ipynb": (
         "abc0123", "2015-02-12T21:30:34", False),
-    # Gradescope: the archive of all submissions, whose table says whose each is.
+    # Gradescope: the archive of all submissions, with the table of who handed in which.
     "assignment_9100_export/submission_41/turns.ipynb": (
         "100", "2026-11-21T20:01:00.500000+00:00", False),
     "assignment_9100_export/submission_42/turns.ipynb": ("bob@uni.example", "", False),
@@ -235,7 +231,7 @@ def test_names_as_the_systems_write_them(tmp_path, around):
             for one in notebooks
         }
         assert found == names
-        # What a group handed in is a question, and so is what only looks like the system's table.
+        # A group's submission needs a person, and so does a table that only resembles the system's.
         unknown = {one.file for one in refused}
         assert unknown == (
             {"assignment_9100_export/submission_43/turns.ipynb"} if sign == "export/" else set()
@@ -252,9 +248,7 @@ def test_a_folder_around_everything_is_no_student(box):
 
 
 def test_what_a_system_adds_is_no_refusal(box):
-    """Blackboard writes a text about each attempt; nbgrader keeps what
-    is not handed in beside what is.
-    """
+    """Blackboard adds a text to each attempt; nbgrader keeps other files beside the submissions."""
     blackboard = [
         f"HW_{who}_attempt_2026-11-20-10-11-12{end}"
         for who in ("ann", "bob")
@@ -265,7 +259,7 @@ def test_what_a_system_adds_is_no_refusal(box):
         *blackboard, text_only, "HW_bob_attempt_2026-11-20-10-11-12_notes.txt", path=box
     )
     assert sorted(found.values()) == ["ann", "bob"]
-    # Who handed in a text alone is named, and so is a text of one's own.
+    # Students who handed in only a text are reported, and so is a student's own text.
     assert sorted(refused) == ["HW_bob_attempt_2026-11-20-10-11-12_notes.txt", text_only]
     folders = [f"{place}/turns/turns.ipynb" for place in ("source", "release")]
     folders += [
@@ -283,9 +277,7 @@ def test_what_a_system_adds_is_no_refusal(box):
 
 
 def test_what_lies_beside_a_notebook_has_the_name_that_its_author_gave_it(box, tmp_path):
-    """Canvas numbers what is handed in again; what one student handed in
-    for Gradescope lies in no folder.
-    """
+    """Canvas numbers resubmitted files; a single student's files in Gradescope are in no folder."""
     files = (
         "doejane_101_5_turns-2.ipynb",
         "doejane_101_6_half-2.py",
@@ -318,7 +310,7 @@ def test_what_lies_beside_a_notebook_has_the_name_that_its_author_gave_it(box, t
 def test_everything_from_one_student_is_a_question(tmp_path, course, place):
     for name in ("a", "b", "c"):
         put(tmp_path / "all", "homework", handed_in(), f"{name}.ipynb")
-    # A notebook that lies by itself was graded as the work of a student of its own name.
+    # A lone notebook was once graded as the work of a student of the same name.
     put(tmp_path, "lone", handed_in(), "turns.ipynb")
     put(tmp_path, "lone", handed_in(), "axes.ipynb")
     with pytest.raises(NothingToGrade, match="belong to one student, 'homework'|^turns would be"):
@@ -389,7 +381,7 @@ CANVAS_BOOK = """Student,ID,SIS User ID,SIS Login ID,Section,Turns (4711)
     [
         ("doejane_101_5_turns.ipynb", "jdoe", "Canvas's number"),
         ("smithbob_203_5_turns.ipynb", "bsmith2", "Canvas's number"),
-        ("doejane_999_5_turns.ipynb", None, "Nobody"),  # the number is what Canvas knows
+        ("doejane_999_5_turns.ipynb", None, "Nobody"),  # Canvas knows the number.
         ("jdoe/turns.ipynb", "jdoe", "the name of the folder"),
         ("JDoe/turns.ipynb", "jdoe", "the name of the folder"),
         ("Jane Doe/turns.ipynb", "jdoe", "the full name"),
@@ -397,7 +389,7 @@ CANVAS_BOOK = """Student,ID,SIS User ID,SIS Login ID,Section,Turns (4711)
         ("S2/turns.ipynb", "bsmith", "the name of the folder"),
         ("stranger/turns.ipynb", None, "Nobody"),
         ("jd\u200boe/turns.ipynb", "jdoe", "the name of the folder"),
-        ("jd\u043ee/turns.ipynb", None, "Nobody"),  # a Cyrillic o
+        ("jd\u043ee/turns.ipynb", None, "Nobody"),  # It has a Cyrillic o.
         ("Jane Doe_77_assignsubmission_file_/turns.ipynb", "jdoe", "the full name"),
     ],
 )
@@ -448,7 +440,7 @@ def test_a_notebook_that_would_fill_the_memory_is_refused(folder):
     (folder / "stranger").mkdir()
     (folder / "stranger" / "turns.ipynb").write_bytes(b"[" + b"[]," * 3_000_000 + b"[]]")
     assert "parts" in the_refused(folder)["stranger/turns.ipynb"]
-    # A long output is one text.
+    # A long output is one string.
     made = handed_in(also=[("markdown", "1, [2], {3}\n" * 400_000)])
     (folder / "neighbour" / "turns.ipynb").write_text(nbformat.writes(made))
     assert len(intake.take_in(folder)[0]) == 1
@@ -462,7 +454,7 @@ def test_a_notebook_that_is_changed_meanwhile_is_not_taken(folder):
         _ = one.cells
 
 
-# ---- what is refused
+# ---- refusals
 
 
 def half(data):
@@ -668,7 +660,7 @@ def test_what_is_no_archive_is_said(tmp_path):
         intake.take_in(tmp_path / "class")
 
 
-# ---- what is read
+# ---- encodings and sizes
 
 
 def test_a_mark_of_byte_order_is_read():
@@ -677,15 +669,13 @@ def test_a_mark_of_byte_order_is_read():
 
 
 def test_of_a_large_archive_little_is_held(box):
-    """What grows with the class is the names and where each file lies: of
-    100,000 it fits any machine.
-    """
+    """Only names and positions of files grow with the class; those of 100,000 fit any machine."""
     number, data = 3_000, nbformat.writes(notebook(["check('turns/sum', 1)"]))
     with zipfile.ZipFile(box, "w") as opened:
         for order in range(number):
             opened.writestr(f"student-{order:06}/turns.ipynb", data)
-    intake.take_in(box, ["turns"])  # what is kept once, by caches
-    for _ in range(3):  # other threads of this process, of earlier tests, only ever add to it
+    intake.take_in(box, ["turns"])  # Fill the caches once.
+    for _ in range(3):  # Other threads, from earlier tests, can only add to it.
         tracemalloc.start()
         try:
             notebooks, refused = intake.take_in(box, ["turns"])

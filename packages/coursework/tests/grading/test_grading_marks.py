@@ -1,6 +1,4 @@
-"""Verdicts from plain data: the same as the student's check, nothing earned
-by default, nothing lost by chance.
-"""
+"""Verdicts from plain data: like the student's check, and nothing earned or lost by chance."""
 
 import contextlib
 import json
@@ -46,9 +44,7 @@ def given(answer, calls=None):
 
 
 def given_function(question, function):
-    """What the sandbox says of a function: what it returned to the
-    check, and to the secret calls.
-    """
+    """Return the sandbox's result for a function: its results in the check and the secret calls."""
     said = given(function, question.contract.question.calls)
     place = question.contract.secret
     with contextlib.suppress(NotPlain):
@@ -108,9 +104,7 @@ def marks_of(questions, name, answer):
 
 
 def test_an_answer_that_is_right_only_where_the_check_looks_earns_nothing(questions):
-    """The points of the check follow from the question: who reads them
-    can put a polynomial through them.
-    """
+    """The check's points follow from the question, so students can fit a polynomial to them."""
     public = questions["turns/sum"].contract.question
     places = points(public)
     rows = sm.Matrix(
@@ -128,7 +122,7 @@ def test_an_answer_that_is_right_only_where_the_check_looks_earns_nothing(questi
     )
     forged = "wrong", "right only where it is checked", 0
     assert marks_of(questions, "turns/sum", given(sm.expand(polynomial))) == forged
-    # A share of the points for a known mistake is earned in no other way.
+    # A share of the points for a known mistake cannot be forged either.
     assert marks_of(questions, "turns/about-x", given(A_C_N.T)) == ("wrong", "transposed", 1)
     place = points(questions["turns/about-x"].contract.question)
     x = sm.Symbol("theta")
@@ -160,8 +154,8 @@ def test_a_table_of_what_a_function_returned_is_no_function(questions):
         given_function(question, lambda x: 2 * x), secret={"unreadable": "It raised."}
     )
     assert marks_of(questions, "turns/doubled", refusing)[1] == "right only where it is checked"
-    # What was not called, by whosever fault, goes to a person; and so does
-    # what was called with other secrets.
+    # Uncalled functions, whatever the reason, wait for a person, and so do calls with other
+    # secrets.
     for said in (
         {},
         {"unreadable": CUT_SHORT[0]},
@@ -224,13 +218,11 @@ def of_pairs(pairs):
     [
         (of_pairs, [[[]], [[[0.5, 1.0]]], [[[2.0, 3.0], [4.0, 0.5]]]], True),
         (of_pairs, [[[[1, 2]]], [[[3, 5], [4, 7]]]], True),
-        (of_words, [["zxy"], ["xyzzy"]], False),  # nobody but the author knows another
+        (of_words, [["zxy"], ["xyzzy"]], False),  # Only the author knows another.
     ],
 )
 def test_secret_calls_are_others_than_those_of_the_check(function, calls, others):
-    """Where only words of the author's may be asked for, a table of
-    them is all that a function can be.
-    """
+    """If only the author's words can be arguments, a function can be no more than their table."""
     question = author.question("trial/one", "function", function, calls=calls, result="expression")
     for number in range(10):
         made = secret.secret_of(question, b"secret %d" % number).calls
@@ -374,7 +366,7 @@ def test_the_work_on_a_hostile_answer_is_bounded():
 
 def test_a_costly_answer_is_not_tried_on_every_variant(questions, monkeypatch):
     other = questions["turns/sum"].contract
-    # What the other variants know of, and the student's own does not.
+    # The other variants know answers that the student's own does not.
     question = Asked(replace(other, known={}), siblings=(other,) * 15)
     judged, whole = [], marking.judge
     monkeypatch.setattr(
@@ -392,7 +384,7 @@ def test_a_costly_answer_is_not_tried_on_every_variant(questions, monkeypatch):
 
 
 def test_an_honest_long_answer_is_worked_out(questions):
-    # A chain that was multiplied out: thousands of products of sines and cosines.
+    # It is an expanded chain of thousands of products of sines and cosines.
     expression = sm.expand((sm.sin(alpha) + sm.cos(beta) + sm.sin(beta) + 2) ** 16)
     plain = to_plain(expression)
     assert 1_000 < len(plain["nodes"]) < MOST_NODES < MOST_WORK

@@ -1,6 +1,4 @@
-"""A whole course: what lateness costs, what is dropped, what a student
-sees, and what a year leaves behind.
-"""
+"""A whole course: the cost of lateness, dropped marks, students' pages, and a year's results."""
 
 import datetime
 import io
@@ -80,15 +78,15 @@ def result(
     "when, penalty",
     [
         ("2026-10-05T23:00:00", 0),
-        ("2026-10-06T00:14:00", 0),  # within the grace
+        ("2026-10-06T00:14:00", 0),  # Within the grace period.
         ("2026-10-06T00:14:01", 0.1),
         ("2026-10-06T23:59:00", 0.1),
         ("2026-10-06T23:59:01", 0.2),
         ("2026-10-12T23:59:00", 0.5),
         ("2026-10-12T23:59:01", 1),
-        ("2026-10-05T21:59:00+00:00", 0),  # the same moment, by another clock
+        ("2026-10-05T21:59:00+00:00", 0),  # The same moment, by another clock.
         ("2026-10-05T22:14:01+00:00", 0.1),
-        ("", 0),  # nobody knows
+        ("", 0),  # Nobody knows.
     ],
 )
 def test_lateness_costs_what_the_rules_say(rules, when, penalty):
@@ -98,8 +96,7 @@ def test_lateness_costs_what_the_rules_say(rules, when, penalty):
 
 
 def test_an_hour_that_a_clock_shows_twice_is_the_later_one(rules):
-    # In the night of 25 October half past two comes twice in Amsterdam, at
-    # 0:30 and at 1:30 of universal time.
+    # On the night of 25 October, half past two comes twice in Amsterdam, at 0:30 and 1:30 UTC.
     for when, penalty in (("2026-10-25T01:30:00+00:00", 0), ("2026-10-25T01:45:01+00:00", 0.1)):
         found, _ = result(rules(), record(2, 2, when, assignment="axes"))
         assert found["axes"].penalty == pytest.approx(penalty)
@@ -107,9 +104,7 @@ def test_an_hour_that_a_clock_shows_twice_is_the_later_one(rules):
 
 @pytest.mark.parametrize("when", ["2026-10-25T02:45:00", "2026-10-25T02:45:00+02:00"])
 def test_who_hands_in_in_an_hour_that_a_clock_shows_twice_is_believed(rules, when):
-    """A time without a zone is the earlier one then, as what is due is the later
-    one: both in favour of the student.
-    """
+    """A time without a zone is then the earlier, and a due date the later, to favour students."""
     found, _ = result(rules(RULES.replace("02:30", "02:10")), record(2, 2, when, assignment="axes"))
     assert (found["axes"].penalty, found["axes"].late) == (0, False)
 
@@ -117,16 +112,17 @@ def test_who_hands_in_in_an_hour_that_a_clock_shows_twice_is_believed(rules, whe
 @pytest.mark.parametrize(
     "due, when, penalty",
     [
-        # A day later by the clock: 25 hours in autumn and 23 in spring.
+        # One day later by the clock, which is 25 hours in autumn and 23 in spring.
         ("2026-10-24T23:59:00", "2026-10-25T23:59:00", 0.1),
         ("2026-10-24T23:59:00", "2026-10-25T22:59:00+00:00", 0.1),
         ("2026-10-24T23:59:00", "2026-10-25T23:00:00+00:00", 0.2),
         ("2027-03-27T23:59:00", "2027-03-28T23:59:00", 0.1),
         ("2027-03-27T23:59:00", "2027-03-28T21:59:00+00:00", 0.1),
-        # Ten minutes later, though the clocks have gone on an hour: within the grace.
+        # Ten minutes later, although the clocks have moved an hour forward, is within the grace
+        # period.
         ("2027-03-28T01:55:00", "2027-03-28T03:05:00", 0),
         ("2027-03-28T01:55:00", "2027-03-28T01:05:00+00:00", 0),
-        # Due at a time that no clock shows.
+        # The due date is a time that no clock shows.
         ("2027-03-28T02:30:00", "2027-03-28T03:30:00", 0),
         ("2027-03-28T02:30:00", "2027-03-28T03:50:00", 0.1),
     ],
@@ -143,7 +139,7 @@ def test_what_is_missing_counts_once_it_is_due(rules):
     assert result(rules(), half, now=datetime.datetime(2026, 10, 25, 1, 0, tzinfo=UTC))[1] == 0.5
     found, total = result(rules(), half)
     assert found["axes"].state == "missing" and total == pytest.approx(0.5 * 3 / 4)
-    # What was never graded counts for nobody.
+    # An assignment that was never graded counts for nobody.
     assert result(rules(), half, worth={"turns": 6})[0]["axes"].state == "not due"
 
 
@@ -253,7 +249,7 @@ def test_times_are_those_of_the_system_and_no_students(tmp_path):
     assert times(
         ("submitted/ann/turns/turns.ipynb", GOOD),
         ("submitted/ann/turns/timestamp.txt", stamp),
-        # Deeper it is a student's own file; and one that says nothing that could be read.
+        # A deeper file is the student's own; another is unreadable.
         ("submitted/bob/turns/more/turns.ipynb", GOOD),
         ("submitted/bob/turns/more/timestamp.txt", stamp),
         ("submitted/carl/turns/turns.ipynb", GOOD),
@@ -296,7 +292,7 @@ def test_a_correlation_needs_enough_students_who_differ():
 
 @pytest.fixture(scope="module")
 def out(tmp_path_factory):
-    """A graded class of a few, whose notebooks nbgrader collected."""
+    """A small graded class, whose notebooks nbgrader collected."""
     folder = tmp_path_factory.mktemp("course")
     submitted = folder / "course" / "submitted"
     answers = {
@@ -346,7 +342,7 @@ def test_a_course_comes_to_a_page_for_each_student_and_a_table(out, rules):
     assert "10 % less" in page and "nothing was handed in" in page and "56.2 %" in page
     for link in re.findall(r'href="([^"]+)"', page):
         assert (out / "course" / "students" / link).exists()
-    # The same once more, and nothing of it depends on the time but what is due.
+    # A second run gives the same; only what is due depends on the time.
     before = (out / "course" / "course.csv").read_bytes()
     write_course(Store(out), rules(roster=out.parent / "roster.csv"), now=now)
     assert (out / "course" / "course.csv").read_bytes() == before
@@ -386,7 +382,7 @@ def test_names_and_answers_stay_text(rules, tmp_path):
     )
 
 
-# --- what reaches the system --------------------------------------------------------------------
+# --- the system's gradebook ---------------------------------------------------------------------
 
 BOOK = (
     "Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\nA,1,,ann,,\nB,2,,bob,,\nC,3,,carl,,\n"
@@ -395,7 +391,7 @@ BOOK = (
 
 @pytest.fixture
 def late(tmp_path):
-    """Results of three, of whom one was two days late; the rules excuse another."""
+    """The results of three students, one of them two days late and another excused."""
     store = Store(tmp_path / "out")
     for student, when, marked in (
         ("ann", "2026-10-07T12:00:00", False), ("bob", "2026-10-05T12:00:00", False),
@@ -417,11 +413,11 @@ def filled(store, *more):
 
 
 def test_the_rules_of_the_term_reach_the_system(late, tmp_path, capsys):
-    """The term gave 68.57 % and "excused", and the gradebook was filled with 18 and 21."""
+    """The term once gave 68.57 % and "excused", while the gradebook was filled with 18 and 21."""
     rules = late.folder / "term.toml"
     text = rules.read_text()
     rules.unlink()
-    assert filled(late) == ["6", "6", "6"]  # there are no rules yet
+    assert filled(late) == ["6", "6", "6"]  # There are no rules yet.
     rules.write_text(text)
     assert filled(late) == ["4.8", "", "6"]
     said = capsys.readouterr().out
@@ -444,7 +440,7 @@ def test_a_decision_is_handed_on_once_it_is_in_the_marks(late, tmp_path, capsys)
 
 
 def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, tmp_path):
-    """Canvas marks a file as late and does not say when it came: that cost nothing."""
+    """Canvas marks a file as late without a time, which once cost nothing."""
     give(late, replace(late.read("carl", "turns"), notebooks=(RunNotebook(late=True),)))
     rules = late.folder / "term.toml"
     for command in (filled, lambda late: main(["term", str(late.folder)])):

@@ -1,6 +1,4 @@
-"""The layers of isolation: tried, named, refused when they are
-not enough, and whole for every user.
-"""
+"""The layers of isolation: tested, named, refused if insufficient, and complete for any user."""
 
 import contextlib
 import ctypes
@@ -49,7 +47,7 @@ def test_no_student_code_runs_where_isolation_is_weak(without):
     for layer in without:
         assert layer in str(refused.value) and isolation.HOW_TO_GET[layer] in str(refused.value)
     assert "--allow-weak-isolation" in str(refused.value)
-    # Only who says so gets it, and every result tells.
+    # Only an explicit request allows it, and every result says so.
     [result] = run_notebooks([HONEST], workers=1, without=without, allow_weak_isolation=True)
     assert Isolation.from_json(result["isolation"]).weak is True
     assert result["isolation"]["not stopped"]
@@ -58,19 +56,17 @@ def test_no_student_code_runs_where_isolation_is_weak(without):
 
 @pytest.mark.long
 def test_each_layer_alone_stops_what_it_is_for():
-    """Every layer is tried by itself; here with all the others off, so
-    that nothing else can have helped.
-    """
+    """Every layer is tested with all others off, so that nothing else can have helped."""
     with Sandbox() as sandbox:
         available = sandbox.isolation_in_force().layers
     for layer in available:
         if layer == NAMESPACES:
-            continue  # tried on its own at every start; what it hides cannot be tried from outside
+            continue  # Each start tests it alone; what it hides cannot be tested from outside.
         others = set(LAYERS) - {layer}
         with Sandbox(without=others, allow_weak_isolation=True) as sandbox:
             in_force = sandbox.report["layers"]
             assert [name for name in LAYERS if in_force[name]["in force"]] == [layer]
-            if layer != LIMITS:  # which hold for users, and root is none
+            if layer != LIMITS:  # These hold for users, not for root.
                 assert not set(isolation.must_stop(layer)) & set(sandbox.report["not stopped"])
 
 
@@ -82,9 +78,7 @@ def test_a_process_that_cannot_be_confined_runs_nothing():
 
 
 def test_a_crash_is_handled_by_nobody():
-    """Neither a file nor a program gets the memory of a crashed notebook,
-    whatever the system has set up for that.
-    """
+    """No file or program receives a crashed notebook's memory, whatever the system's settings."""
     cell = """
 import ctypes, resource
 library = ctypes.CDLL(None)
@@ -174,7 +168,7 @@ def test_root_is_as_safe():
     assert result["answers"]["q"]["outcome"] == "recorded"
 
 
-# ---- the filter of system calls, followed instruction by instruction
+# ---- the filter of system calls, interpreted instruction by instruction
 
 ALLOW, REFUSE, UNKNOWN, KILL = (
     0x7FFF0000,
@@ -186,9 +180,7 @@ OWN = 4711
 
 
 def decision(machine, number, *arguments, architecture=None):
-    """What the filter says to one system call: an interpreter of
-    the few instructions that it has.
-    """
+    """Return the filter's decision on one system call, by interpreting its few instructions."""
     code = system_calls.program(OWN, machine)
     data = struct.pack(
         "=iI Q 6Q",
@@ -289,13 +281,13 @@ def test_the_filter_lets_computing_through_and_nothing_else(machine, numbers):
             assert says(name) == ALLOW, name
         elif name not in conditional:
             assert says(name) == REFUSE, name
-    # Threads, not processes, and never with new namespaces.
+    # Threads are allowed, but not processes, and never with new namespaces.
     thread = 0x003D0F00
     assert says("clone", thread) == ALLOW
     assert (
         says("clone", 17) == says("clone", 0x4111) == says("clone", thread | 0x10000000) == REFUSE
     )
-    # Signals to itself only.
+    # Signals may go only to itself.
     assert says("kill", OWN, 9) == ALLOW
     assert (
         says("kill", OWN + 1, 9)
@@ -304,7 +296,7 @@ def test_the_filter_lets_computing_through_and_nothing_else(machine, numbers):
         == says("kill", -OWN, 9)
         == REFUSE
     )
-    # Limits may be asked for, not set.
+    # Limits may be read, but not set.
     assert says("prlimit", 0, 7, 0, 1) == ALLOW
     assert (
         says("prlimit", 0, 7, 1 << 40, 0)
@@ -312,7 +304,7 @@ def test_the_filter_lets_computing_through_and_nothing_else(machine, numbers):
         == says("prlimit", 99, 7, 0, 1)
         == REFUSE
     )
-    # No locks on shared files, no signals by way of a file, no pushing of input into a terminal.
+    # There are no locks on shared files, no signals through a file, and no input into a terminal.
     assert says("fcntl", 3, 1) == says("ioctl", 1, 0x5401) == says("prctl", 15) == ALLOW
     assert (
         says("fcntl", 3, 8)
@@ -321,9 +313,9 @@ def test_the_filter_lets_computing_through_and_nothing_else(machine, numbers):
         == says("prctl", 1)
         == REFUSE
     )
-    # New calls look as on a kernel that lacks them, so that C libraries do without.
+    # New calls fail as on a kernel that lacks them, so that C libraries work without them.
     assert {decision(machine, number) for number in (425, 435, 437, 447, 470)} == {UNKNOWN}
-    # Calls of another kind of program on the same machine.
+    # Calls of another kind of program on the same machine end the process, or are refused.
     assert decision(machine, numbers["read"], architecture=0x40000003) == KILL
     assert decision(machine, numbers["read"] | 0x40000000) == REFUSE
 
@@ -333,7 +325,7 @@ def test_the_filter_says_for_which_machines_it_is_written():
         system_calls.program(1, "riscv64")
 
 
-# ---- what is missing, in words
+# ---- messages about what is missing
 
 
 def test_what_is_missing_is_said_with_its_remedy():
@@ -364,7 +356,7 @@ def test_a_hostile_folder_is_removed_and_nothing_else(tmp_path):
     (folder / "odd\n\x7f name").write_text("x")
     os.mkfifo(folder / "pipe")
     handle = os.open(folder, os.O_RDONLY)
-    for _ in range(1100):  # deeper than paths may be long, and than Python may recurse
+    for _ in range(1100):  # Deeper than paths may be long, and than Python may recurse.
         os.mkdir("deep", dir_fd=handle)
         inner = os.open("deep", os.O_RDONLY, dir_fd=handle)
         os.close(handle)
@@ -391,7 +383,7 @@ def test_the_room_that_files_take_is_measured(tmp_path):
 
 
 def test_what_root_alone_may_read_is_opened_and_not_given_to_root(tmp_path, monkeypatch):
-    """Root is told to let others read its Python: it owns it already."""
+    """Root must let others read its Python, since it owns it already."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("sympy.__file__", "/nobody/may/read/this.py")
     (said,) = [line for line in WarmParent.cannot_work() if "cannot read" in line]

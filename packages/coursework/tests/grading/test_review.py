@@ -1,6 +1,4 @@
-"""The page to judge in: safe against other pages and against what
-it shows, and worked by keys alone.
-"""
+"""The page to mark in: safe against other pages and its own content, and usable by keys alone."""
 
 import base64
 import functools
@@ -74,7 +72,7 @@ def out(graded, tmp_path):
 
 
 class Served:
-    """The page, served from a thread; what is asked of it."""
+    """The page, served from a thread, with requests to it."""
 
     def __init__(self, folder, **options):
         from tornado import httpserver, ioloop, netutil
@@ -129,7 +127,7 @@ class Served:
         return response, text
 
     def decide(self, cluster, body="credit=1", seen=None, **headers):
-        """Decide, upon what the page shows now, or showed when it was ``seen``."""
+        """Decide on what the page shows now, or showed when it was ``seen``."""
         body += f"&seen={quote(self.seen(cluster) if seen is None else seen)}"
         headers = {
             "Origin": f"http://127.0.0.1:{self.port}",
@@ -153,7 +151,7 @@ def test_only_this_machine_this_name_and_this_page_are_heard(out):
     with Served(out) as served:
         assert served.ask(f"/{served.secret}/")[0].status == 200
         assert served.ask("/wrong/")[0].status == 404 and served.ask("/")[0].status == 404
-        # Somebody else's name that was led to this machine.
+        # Somebody else's host name leads to this machine.
         assert served.ask(f"/{served.secret}/", Host="evil.example")[0].status == 403
         assert served.ask(f"/{served.secret}/", Host=f"evil.example:{served.port}")[0].status == 403
         cluster = first_of(served)
@@ -166,7 +164,7 @@ def test_only_this_machine_this_name_and_this_page_are_heard(out):
         ):
             assert served.decide(cluster, **headers).status == 403
         body = served.ask(f"/{served.secret}/answer/{cluster}", "POST", "credit=1")[0]
-        assert body.status == 403  # without an origin
+        assert body.status == 403  # There is no origin.
         assert Journal(out).by_people == []
         assert served.decide(cluster).status == 303
         assert len(Journal(out).by_people) == 1
@@ -239,7 +237,7 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
         and "Half of it." in page
         and "appeal" not in page.partition("<main>")[2]
     )
-    # It is judged, and can be found as such, and taken back.
+    # It is decided, can be found as such, and can be taken back.
     with Served(out) as served:
         assert first_of(served, "decided") == cluster.id
         served.decide(cluster.id, "credit=back")
@@ -261,7 +259,7 @@ def test_two_who_judge_at_once_are_told_and_lose_nothing(out):
         response, page = first.ask(f"/{first.secret}/answer/{name}", "POST", body, **headers)
         assert response.status == 409 and "Ben gave 0.5" in page and "All of it" in page
         assert {one.who for one in Journal(out).by_people} == {"Ben"}
-        # What Ben decided is not Ann's to take back; upon it she may decide.
+        # Ann cannot take back Ben's decision, but she can decide after it.
         assert first.decide(name, "credit=back").status == 409
         assert first.decide(name, "credit=1").status == 303
         assert second.decide(name, "credit=back").status == 303
@@ -328,7 +326,7 @@ def test_shared_tries_are_a_hint_if_they_are_several_and_unusual(out):
         == ["2 unusual wrong answers that one other student also tried"]
     )
     assert shared[third] == []
-    # One may be chance.
+    # One may be coincidence.
     assert not any(said_of(["aaaaaa", "bbbbbb"], ["aaaaaa"], ["eeeeee"]).values())
     usual = said_of(*[["aaaaaa", "bbbbbb"]] * len(records))
     assert not any(usual.values())
@@ -357,7 +355,7 @@ def test_the_commands(out, capsys, tmp_path, graded):
 
 def test_who_stops_judging_has_the_decisions_in_the_marks(out):
     command = [sys.executable, "-m", "coursework", "review", str(out)]
-    # Whoever starts the tests in the background has them, and all that they start, not hear Ctrl+C.
+    # Tests started in the background, and everything that they start, would ignore Ctrl+C.
     hear = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=hear) as page:
         assert "Open this address" in page.stdout.readline()
@@ -386,7 +384,7 @@ PLOT = [
 
 
 def picture(color):
-    """A plot as Jupyter keeps it."""
+    """Return a plot as Jupyter stores it."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -398,7 +396,7 @@ def picture(color):
 
 @pytest.fixture(scope="module")
 def plotted(tmp_path_factory):
-    """The results of a class that drew and wrote; not all of what they drew is a picture."""
+    """The results of a class that drew and wrote; some of its drawings are not pictures."""
     place = tmp_path_factory.mktemp("plots")
     (place / "solutions").mkdir()
     nbformat.write(notebook(PLOT), place / "solutions" / "plots.ipynb")
@@ -453,8 +451,7 @@ def test_plots_are_seen_beside_the_text_and_only_pictures_are_shown(plotted):
 def on_a_telephone(out, plotted, browser, scheme="light"):
     """Open the pages for instructors and for students, one after another."""
     with Served(out) as served, Served(plotted) as of_plots:
-        # The page's own policy lets no script in; it is tested
-        # elsewhere, and set aside for this one.
+        # The page's own policy lets no script in. It is tested elsewhere and bypassed here.
         context = browser.new_context(
             color_scheme=scheme, viewport={"width": 380, "height": 800}, bypass_csp=True
         )
@@ -501,8 +498,9 @@ MANY = 12
 
 
 def test_many_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
-    """Each answer is different: every one decided, without a mouse, and nothing lost. Single keys
-    decide nothing before somebody has switched them on.
+    """Decide on many different answers without a mouse and lose none.
+
+    Single keys decide nothing before somebody has switched them on.
     """
     out = shutil.copytree(graded / "out", tmp_path / "out")
     store = Store(out)
@@ -516,7 +514,7 @@ def test_many_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
         one["answers"]["turns/sum"]["plain"]["nodes"][0][-1] = f"1.000{number:03}"
         give(store, Record.from_json(one, "one"))
     with Served(out) as served:
-        # The page's own policy lets no script of a test in either; what it says is tested above.
+        # The page's own policy forbids a test's scripts, too; its content is tested above.
         page = browser.new_context(bypass_csp=True).new_page()
         requests = []
         page.on("request", lambda request: requests.append(request.url))
@@ -529,13 +527,13 @@ def test_many_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
         with page.expect_navigation():
             page.keyboard.press("n")
         for number in range(MANY):
-            # The page's policy forbids to wait by a script; what is seen on it does as well.
+            # The page's policy forbids waiting by a script, so wait for its text.
             page.locator(".steps", has_text=re.compile(rf"\b1 of {MANY - number}\b")).wait_for(
                 timeout=60_000
             )
             if number == 3:
                 page.keyboard.press("c")
-                page.keyboard.type("Rounded: 4 digits")  # a sign in a field is no command
+                page.keyboard.type("Rounded: 4 digits")  # In a field, a character is no command.
                 page.keyboard.press("Escape")
             with page.expect_navigation():
                 page.keyboard.press("4" if number % 2 else "2")
@@ -548,8 +546,8 @@ def test_many_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
     assert [one.comment for one in decided.values() if one.comment] == ["Rounded: 4 digits"]
 
 
-#: Before the command runs: what Windows has not, and how it locks a file. What
-#: others made knows its system already.
+#: Code that runs before the command and imitates Windows: what it lacks, and how it locks a file.
+#: Imported libraries know their system already.
 ON_WINDOWS = """
 import os, shutil, subprocess, sys, types
 import nbformat, sympy, tornado.httpserver, tornado.ioloop, tornado.web
@@ -583,7 +581,7 @@ def on_windows(program, *arguments):
 
 @pytest.mark.long
 def test_on_windows_what_runs_nobody_s_code_runs(out, tmp_path):
-    """And what does, says where it can be run."""
+    """Commands that do run students' code say where they can run."""
     command = "main(sys.argv[1:])"
     done = on_windows(command, "export", out, "--feedback", tmp_path / "feedback.zip")
     assert done.returncode == 0 and (tmp_path / "feedback.zip").is_file(), done.stderr

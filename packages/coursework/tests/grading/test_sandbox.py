@@ -1,6 +1,4 @@
-"""Notebooks in, answers out as plain data: what is recorded, what is
-named, and what costs nobody else.
-"""
+"""Notebooks in, answers out as plain data: what is recorded, reported, and harms nobody else."""
 
 import base64
 import contextlib
@@ -147,7 +145,7 @@ def test_a_function_is_called_with_the_given_arguments(sandbox):
     assert plain["value"] == [
         "function",
         [["expression", 0], ["expression", 1], ["raised", "IndexError: list index out of range"]],
-        True,  # it works something out
+        True,  # It computes something.
     ]
     assert plain["nodes"] == [["integer", "3"], ["integer", "7"]]
 
@@ -202,7 +200,7 @@ def test_a_function_that_ends_the_process_costs_only_its_own_question(sandbox):
     assert outcomes(result) == ["done", "done"] and result["runs"] == 2
 
 
-# ---- one cell's end is not the others'
+# ---- one cell's end does not end the others
 
 
 def test_errors_are_named_with_their_line(sandbox):
@@ -314,7 +312,7 @@ def test_a_notebook_that_works_only_out_of_order_is_told_so(sandbox):
     assert result["answers"]["q"]["plain"] == integer(2)
     assert result["answers"]["r"]["plain"] == integer(1)
     assert result["notes"] == ["works only out of order"]
-    assert result["cells"][1]["error"].startswith("NameError")  # in the order in which it is read
+    assert result["cells"][1]["error"].startswith("NameError")  # In the order in which it is read.
 
 
 def test_top_to_bottom_is_what_counts_where_it_works(sandbox):
@@ -329,7 +327,7 @@ def test_an_order_that_does_not_help_is_not_noted(sandbox):
     assert result["answers"]["q"] == {"outcome": "missing"} and result["notes"] == []
 
 
-# ---- what honest notebooks do
+# ---- honest notebooks
 
 
 @pytest.mark.parametrize(
@@ -370,7 +368,7 @@ def test_an_order_that_does_not_help_is_not_noted(sandbox):
     ],
 )
 def test_honest_cells_run(sandbox, source, monkeypatch):
-    # They are to come to their end, also on a slow machine.
+    # They must run to their end even on a slow machine.
     monkeypatch.setattr(sandbox, "limits", Limits())
     if "scipy" in source:
         pytest.importorskip("scipy")
@@ -408,7 +406,7 @@ def test_cells_run_as_in_jupyter(sandbox, cells):
 
 
 def test_files_beside_lead_nowhere(sandbox):
-    """Names come from an archive and were looked at before; here they may be anything."""
+    """Names come from an archive and were checked before; here they may be anything."""
     files = {
         "../outside": "",
         "/tmp/outside": "",
@@ -460,7 +458,7 @@ def test_the_same_bytes_on_any_number_of_workers_and_when_one_is_killed():
 
     def killing(jobs):
         for number, job in enumerate(jobs):
-            if number == 8:  # a warm parent, with whatever it is at
+            if number == 8:  # Kill a warm parent, whatever it is doing.
                 warm_parents()[0].kill()
             yield job
 
@@ -472,13 +470,13 @@ def test_the_same_bytes_on_any_number_of_workers_and_when_one_is_killed():
 @pytest.mark.parametrize(
     "ticks, charged",
     [
-        ([(0.5, 0.0, 1)] * 3, 1.5),  # asleep: woken at each tick, and at once
-        ([(0.5, 0.5, 0)] * 3, 1.5),  # alone at work
-        ([(0.5, 0.1, 30)] * 3, 0.3),  # at work and reading files, a fifth of a busy machine
-        # At work, and nearly nothing of a machine that is very busy.
+        ([(0.5, 0.0, 1)] * 3, 1.5),  # Asleep: it wakes at each tick, and at once.
+        ([(0.5, 0.5, 0)] * 3, 1.5),  # Alone at work.
+        ([(0.5, 0.1, 30)] * 3, 0.3),  # At work and reading files, with a fifth of a busy machine.
+        # At work, with almost nothing of a very busy machine
         ([(0.5, 0.001, 0)] * 3, 0.003),
         ([(40.0, 0.001, 0)], 0.001),
-        ([(40.0, 0.0, 1)], 0.5),  # nobody knows for how long it slept
+        ([(40.0, 0.0, 1)], 0.5),  # Nobody knows how long it slept.
     ],
 )
 def test_what_a_busy_machine_withholds_is_charged_to_nobody(monkeypatch, ticks, charged):
@@ -507,7 +505,7 @@ def test_an_answer_that_gets_next_to_nothing_of_a_processor_is_not_lost():
         for process in (first, *first.children(recursive=True)):
             process.nice(19)
             process.cpu_affinity([processor])
-            # Where processor time is shared out by sessions first.
+            # Some systems first distribute processor time among sessions.
             with contextlib.suppress(OSError):
                 Path(f"/proc/{process.pid}/autogroup").write_text("19")
         other = subprocess.Popen([sys.executable, "-c", "while True: pass"])
@@ -519,12 +517,12 @@ def test_an_answer_that_gets_next_to_nothing_of_a_processor_is_not_lost():
             other.kill()
             other.wait()
     assert result["answers"]["q"]["outcome"] == "recorded", result
-    assert time.monotonic() - start > 2  # or it was no strain
+    assert time.monotonic() - start > 2  # Otherwise there was no strain.
 
 
 @pytest.mark.sampled(2, of="sandboxes under strain")
 def test_addresses_are_the_same_each_time():
-    """Some of what a notebook works out depends on them."""
+    """Some of a notebook's results depend on them."""
     asked, answers = notebook("check('q', [id(object), id([])])", questions={"q": None}), []
     for _ in range(2):
         with Sandbox(LIMITS) as sandbox:
@@ -533,10 +531,10 @@ def test_addresses_are_the_same_each_time():
 
 
 def warm_parents():
-    """The processes of the workers, oldest first."""
+    """Return the processes of the workers, oldest first."""
     found = []
     for process in psutil.Process().children(recursive=True):
-        with contextlib.suppress(psutil.Error):  # it may end while it is asked
+        with contextlib.suppress(psutil.Error):  # It may end in the meantime.
             if "coursework.grading.execution.warm_parent" in " ".join(process.cmdline()):
                 found.append(process)
     assert found
@@ -573,9 +571,7 @@ for result in run_notebooks(json.loads(sys.argv[1]), workers=2, **options):
 
 @pytest.fixture(params=["with bubblewrap", "without bubblewrap"])
 def environment(request, tmp_path):
-    """The environment of a grader that finds bubblewrap, or does not, with its
-    own folder for what is temporary.
-    """
+    """A grader's environment with its own temporary folder, with or without bubblewrap."""
     bubblewrap = shutil.which("bwrap")
     if request.param == "with bubblewrap" and bubblewrap is None:
         pytest.skip("bubblewrap is not installed")
@@ -588,9 +584,7 @@ def environment(request, tmp_path):
 
 
 def folders_in(place):
-    """What is ours: Python itself tries such a place with an empty
-    file, which a kill may leave there.
-    """
+    """Return our own folders; Python itself tests such a place with an empty file."""
     return [entry.name for entry in os.scandir(place) if entry.is_dir()]
 
 
@@ -628,9 +622,7 @@ def end_at_once(grader):
 
 @pytest.mark.sampled(2, of="graders that are killed")
 def test_a_grader_that_is_killed_while_it_starts_leaves_nothing(environment):
-    """Killed as soon as there is a folder: the libraries are still being loaded
-    then, and nothing has been tried.
-    """
+    """Kill it as soon as the folder exists, while libraries load and nothing has been tested."""
     grader = subprocess.Popen(
         [sys.executable, "-c", KILLED, json.dumps([notebook("1")]), "[]"], env=environment
     )

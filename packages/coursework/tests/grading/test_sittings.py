@@ -17,7 +17,7 @@ ASKED = (
 
 
 def test_a_sheet_shows_the_numbers_that_only_a_cell_has(tmp_path, monkeypatch):
-    monkeypatch.setattr(sittings, "BROWSERS", ())  # which would make a PDF of it
+    monkeypatch.setattr(sittings, "BROWSERS", ())  # These would make a PDF of it.
     cells = [("code", SETUP), ("code", DRAWN), ("markdown", "Set `total` to their sum.")]
     cells += [("code", ANSWERED), ("code", ASKED)]
     source = write_source(tmp_path / "solutions", *cells)

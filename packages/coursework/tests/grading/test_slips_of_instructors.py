@@ -1,6 +1,4 @@
-"""What happens to whoever is in a hurry: the wrong folder, a full disk, half a
-download; it is said, in a sentence.
-"""
+"""Slips in a hurry, such as a wrong folder, a full disk or half a download, are explained."""
 
 import errno
 import io
@@ -42,7 +40,7 @@ def graded(course, submissions, out, **more):
 
 
 def test_results_are_nobody_s_work(course):
-    """They lay among what was handed in, and the second run refused each of their files."""
+    """They were among the submissions, and the second run once refused each of their files."""
     assert graded(course, course / "in", course / "in" / "marks")["refused"] == 0
     assert graded(course, course / "in", course / "in" / "marks") == {
         "graded": 0,
@@ -89,9 +87,7 @@ def test_a_decision_that_a_full_disk_refused_is_not_lost_unsaid(course, monkeypa
 
 
 def test_a_name_begins_no_line_of_a_table(tmp_path):
-    """Some signs end a line for Python and for no spreadsheet: a
-    student's own name could hold one.
-    """
+    """Some characters, perhaps in a student's name, end a line in Python but in no spreadsheet."""
     roster = "student,name,email\neve,Eve\u2028ada,Eve,eve@uni.example\nben,Ben\x85,b@uni.example\n"
     (tmp_path / "roster.csv").write_text(roster, "utf8")
     assert set(Roster(tmp_path / "roster.csv").people) == {"eve", "ben"}

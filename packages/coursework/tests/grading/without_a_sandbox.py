@@ -1,4 +1,4 @@
-"""What the sandbox would give, for notebooks whose answers can be read off."""
+"""A replacement for the sandbox, for notebooks whose answers can be read off."""
 
 import ast
 import re
@@ -7,9 +7,7 @@ from coursework.checking.plain import to_plain
 
 
 def run_without_a_sandbox(jobs, finish, *others):
-    """What the sandbox would give for these notebooks, whose answers
-    are numbers and names of functions.
-    """
+    """Return the sandbox's results for notebooks whose answers are numbers or function names."""
 
     def answer(job, name, about):
         found = re.search(

@@ -1,4 +1,4 @@
-"""A small course, students, and the command `coursework`: what an instructor has."""
+"""A small course for an instructor: its solutions, its students, and the command `coursework`."""
 
 import contextlib
 import csv
@@ -25,10 +25,9 @@ def notebook(*cells):
 
 
 class Course:
-    """Solutions, a folder of what was handed in, and the marks.
+    """Solutions, a folder of submissions, and the marks.
 
-    Each question is a number that the students give, or a text: `questions` says
-    what is right, and what it is worth.
+    Each question asks for a number or a text; `questions` gives the right answer and the points.
     """
 
     def __init__(self, place, **assignments):
@@ -56,14 +55,12 @@ class Course:
         nbformat.write(notebook(*cells), self.solutions / f"{name}.ipynb")
 
     def change(self, name, **questions):
-        """Mend the source: another right answer, or another worth."""
+        """Change the source to another right answer or another worth."""
         self.assignments[name] |= questions
         self.write_source(name)
 
     def answers(self, name, **given):
-        """The notebook of a student who answers right but for what is
-        `given`; `None` leaves the blank.
-        """
+        """Return a student's notebook, right except for the answers `given`; `None` is a blank."""
         cells = ["from coursework import check"]
         for question, (right, _) in self.assignments[name].items():
             answer = given.get(question, right)
@@ -78,9 +75,10 @@ class Course:
         return path
 
     def run(self, *words, fails=False, stdin=""):
-        """Run the command; give all that it says.
+        """Run the command, and return all of its output.
 
-        It runs in this process, which has loaded SymPy: in one of its own each would take seconds.
+        It runs in this process, which has loaded SymPy; in a process of its own, it would take
+        seconds.
         """
         said, status = io.StringIO(), 0
         with contextlib.ExitStack() as stack:
@@ -110,7 +108,7 @@ class Course:
         return self.run("export", "marks", "--lms", book, "--filled", book, *words, **more)
 
     def points(self, assignment=None):
-        """What grades.csv says of each student, or of each in an assignment."""
+        """Return the points in grades.csv of each student, or of each student in one assignment."""
         rows = csv.DictReader((self.marks / "grades.csv").read_text("utf8").splitlines())
         return {
             row["student"]: float(row["points"])
@@ -130,7 +128,7 @@ class Course:
         return path
 
     def canvas_book(self, *columns, name="book.csv"):
-        """A gradebook of Canvas, empty, of all who have handed in."""
+        """Write an empty Canvas gradebook of everybody who has handed in."""
         students = sorted(os.listdir(self.handed_in))
         rows = [
             {"Student": student, "ID": number, "SIS User ID": "", "SIS Login ID": student,
@@ -140,7 +138,7 @@ class Course:
         return self.write_table(name, rows)
 
     def column(self, book, column):
-        """What a filled gradebook says of each student."""
+        """Return the contents of a column in a filled gradebook for each student."""
         rows = csv.DictReader(Path(book).read_text("utf8").splitlines())
         key = "SIS Login ID" if "SIS Login ID" in rows.fieldnames else rows.fieldnames[0]
         return {row[key]: row[column] for row in rows}

@@ -1,4 +1,4 @@
-"""What stands when a source changes: the page of moves, and variants that it has no more."""
+"""Marks after a source changes: the page of changes, and variants that were removed."""
 
 import hashlib
 
@@ -54,7 +54,7 @@ def write_beam(course, weights):
 
 
 def number_of(student, count):
-    """The rule, written down a second time."""
+    """The rule, written independently."""
     digest = hashlib.sha256(f"\nhw1/load\n{student}".encode()).digest()
     return int.from_bytes(digest[:8], "big") % count
 
@@ -93,7 +93,7 @@ def test_a_variant_is_taken_out_before_a_late_notebook_comes(tmp_path):
     hands_in_beam(course, new, after[number_of(new, 3)], True)
     course.grade()
     assert course.points() == {first: 4, shown: 4, cleared: 0, new: 4}
-    # What the notebook shows rules; where it shows nothing, a person decides.
+    # The variant that the notebook shows counts; if it shows none, a person decides.
     (waits,) = course.table("undecided.csv")
     assert (
         waits["student"] == cleared and "Which edition did this student have?" in waits["message"]

@@ -1,6 +1,4 @@
-"""An instructor goes from nothing to a second term, by the commands of the manual, with the
-mistakes that people make on the way.
-"""
+"""An instructor goes from nothing to a second term by the manual's commands, with usual errors."""
 
 import contextlib
 import csv
@@ -30,7 +28,7 @@ BOOK = """Student,ID,SIS User ID,SIS Login ID,Section,First steps (9)
 
 @pytest.fixture
 def run(tmp_path, monkeypatch):
-    """Runs a command in the folder of the course; nobody is there to say yes."""
+    """Return a function that runs a command in the course's folder, with nobody there to agree."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("sys.stdin", io.StringIO())
 
@@ -51,7 +49,7 @@ def run(tmp_path, monkeypatch):
 
 
 def hand_in(folder, place, **answers):
-    """Open the notebook that students get, answer, and save it in the folder of a student."""
+    """Open the students' notebook, answer, and save it in a student's folder."""
     made = json.loads((folder / "exercises" / "first-steps.ipynb").read_text("utf8"))
     for cell in made["cells"]:
         for name, right in RIGHT.items():
@@ -101,7 +99,8 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     assert "Did you mean 'first-steps'?" in run("why ada first-step", fails=True)
     said = run("export marks --lms book.csv --feedback feedback.zip")
     assert "4 marks filled in" in said and "3 pages of feedback" in said
-    # A mended question moves marks once somebody agrees, and the next export says what changed.
+    # A corrected question changes marks once somebody agrees, and the next export lists the
+    # changes.
     edited(
         folder / "solutions" / "first-steps.ipynb", "symbols='x', worth=2", "symbols='x', worth=4"
     )
@@ -112,7 +111,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     edited(term, "extensions.cemm", "extensions.cem")
     said = run("export marks --lms book-filled.csv --filled book-filled.csv")
     assert "  ben: 5 -> 5.25" in said and "  cem: 3 stays" in said
-    # A second attempt, an appeal, and the totals.
+    # Then come a second attempt, an appeal, and the totals.
     hand_in(folder, "handed-in/ben/first-steps-2.ipynb")
     assert "'ben', first-steps: 7 -> 8" in run("grade handed-in --out marks", fails=True)
     run("grade handed-in --out marks --yes")
@@ -121,7 +120,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     assert "Lines imported from appeals.csv: 0." in run("merge marks appeals.csv --grader Ann")
     run("term marks")
     assert '"ben","100"' in (folder / "marks" / "course" / "course.csv").read_text()
-    # The next term: other people, and other numbers.
+    # The next term has other students and other numbers.
     edited(folder / "course.toml", 'title = "My course"', 'title = "My course"\nedition = "2027"')
     run("release first-steps")
     (folder / "next.csv").write_text("student\neva\nfay\n")
@@ -133,7 +132,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
 
 
 def ticked(table, **ticks):
-    """Fill in the column `tick` as a spreadsheet would: for each question, by a student's name."""
+    """Fill in the column `tick` like a spreadsheet: for each question, by a student's name."""
     with open(table, encoding="utf8", newline="") as file:
         rows = list(csv.DictReader(file))
     for row in rows:
@@ -145,7 +144,7 @@ def ticked(table, **ticks):
 
 
 def test_a_sitting_of_a_class(run, tmp_path, monkeypatch):
-    """Printed, ticked, merged, appealed and exported, beside homework on the same questions."""
+    """It is printed, ticked, merged, appealed and exported, with homework on the same questions."""
     folder = tmp_path / "my-course"
     place = folder / "marks" / "sittings" / "quiz"
     (folder / "roster.csv").write_text("student\n" + "".join(f"s-{n:02}\n" for n in range(30)))
@@ -169,7 +168,7 @@ def test_a_sitting_of_a_class(run, tmp_path, monkeypatch):
         and "rectangle" in markers
     )
     assert "decision is pending: 30." in run("export marks --assignment quiz --nbgrader n.csv")
-    # A letter that no box has enters nothing. Each box is worth what it says.
+    # A letter without a box enters nothing. Each box is worth what it says.
     merge = "merge marks marks/sittings/quiz/ticks.csv --grader Ann"
     ticked(place / "ticks.csv", area=lambda student: "Q", slope=lambda student: "A")
     assert "'Q' is neither a credit from 0 to 1 nor the letter of a box" in run(merge, fails=True)
@@ -178,7 +177,7 @@ def test_a_sitting_of_a_class(run, tmp_path, monkeypatch):
     )
     assert "ticks.csv: 60." in run(merge) and "ticks.csv: 0." in run(merge)
     assert "quiz: 2.5 of 3 points" in run("why s-00 quiz")
-    # Printed once more, the table keeps its ticks, and the answers their decisions.
+    # Printed again, the table keeps its ticks, and the answers keep their decisions.
     run(command)
     assert "ticks.csv: 0." in run(merge)
     (folder / "appeals.csv").write_text("student,question,words\ns-01,first-steps/area,Why?\n")
@@ -190,10 +189,10 @@ def test_a_sitting_of_a_class(run, tmp_path, monkeypatch):
     )
     assert "9 students would gain" in run(merge, fails=True)
     run("regrade marks --yes")
-    # Work handed in after it is graded as ever, and the sheets stay what they are.
+    # Later submissions are graded as usual, and the sheets stay as they are.
     hand_in(folder, "handed-in/s-01/first-steps.ipynb")
     assert "28 handed in nothing" in run("grade handed-in --out marks")
-    # Homework on the same questions counts what the sitting shows, and a little more.
+    # Homework on the same questions counts up to the share in the sitting, and a little more.
     (folder / "book.csv").write_text(BOOK.replace("ada", "s-00").replace("ben", "s-01"))
     columns = "column = 'First steps'\nhomework-cap = 0.25\n"
     edited(

@@ -1,4 +1,4 @@
-"""Instructors do what they do each week; no mark that was given moves before it was said."""
+"""Instructors' weekly routine: no mark changes before they have seen the change."""
 
 import nbformat
 import pytest
@@ -30,9 +30,9 @@ def test_a_late_notebook_comes_after_the_source_changed(tmp_path):
     assert "5 students would lose: hw2/load." in said and "'ada', hw2: 8 -> 0" in said
     assert "No existing mark was changed." in said
     assert course.points() == {**before, "fay": 8}
-    # Asked once more it says the same, and runs nothing again.
+    # A second run says the same, and runs no notebook again.
     assert "6 of them graded before" in course.grade(fails=True)
-    # With a yes it comes to pass, and is written down.
+    # With a yes, the marks change and the log says so.
     course.grade("--yes")
     assert course.points() == {**dict.fromkeys(before, 0), "fay": 8}
     log = (course.marks / "run.log").read_text()
@@ -78,7 +78,7 @@ def test_a_policy_says_what_a_mended_question_may_do(tmp_path, policy, points, s
     assert course.points() == points
     assert says in (course.marks / "feedback" / "ben" / "hw2.html").read_text()
     assert "Marks changed: 0." in course.regrade()
-    # A person's decision stands above a policy, but a question that is void counts for nobody.
+    # A person's decision overrides a policy, but a void question counts for nobody.
     record = Store(course.marks).read("ada", "hw2")
     Journal(course.marks).add(record, "hw2/load", 0.5, who="Ann")
     course.regrade("--yes")
@@ -105,7 +105,7 @@ def test_a_table_of_decisions_decides_only_what_it_was_written_for(course):
         "line 2, ada: we do not have this answer. Perhaps the student has handed in again" in said
     )
     assert course.points()["ada"] == 8
-    # A table that is bound to no answers is none of decisions.
+    # A table without the IDs of answers is not one of decisions.
     unbound = course.write_table(
         "unbound.csv", [{"student": "ada", "question": "hw2/why", "credit": "1"}]
     )
@@ -115,7 +115,7 @@ def test_a_table_of_decisions_decides_only_what_it_was_written_for(course):
 
 
 def test_a_decision_that_was_merged_stays(course, tmp_path):
-    """Ann and Ben each fill in a table on copies of the folder; Ben is the later one."""
+    """Ann and Ben each fill in a table on copies of the folder; Ben's is the later one."""
     course.hands_in("ada", "hw2", why="As the moments add up.")
     course.grade()
     table = course.table("undecided.csv")
@@ -134,13 +134,13 @@ def test_a_decision_that_was_merged_stays(course, tmp_path):
         assert "Marks changed: 0." in course.regrade()
     course.grade()
     assert course.points() == {"ada": 8.5}
-    # A table over what a colleague decided is refused, line by line.
+    # A table that contradicts a colleague's decisions is refused, line by line.
     said = course.run("merge", "marks", course.place / "decided.csv", "--grader", "Ann")
     assert "line 2, ada: Ben already gave 0.5" in said and course.points() == {"ada": 8.5}
 
 
 def test_one_assignment_takes_in_no_other(course):
-    """nbgrader's layout: submitted/student/assignment."""
+    """The layout is nbgrader's: submitted/student/assignment."""
     for student, name in (("ada", "hw1"), ("ada", "hw2"), ("ben", "hw2")):
         path = course.handed_in / "submitted" / student / name / f"{name}.ipynb"
         path.parent.mkdir(parents=True)
@@ -149,7 +149,8 @@ def test_one_assignment_takes_in_no_other(course):
     assert course.points() == {"ada": 4} and course.table("refused.csv") == []
     course.grade("--assignment", "hw2")
     assert course.points("hw2") == {"ada": 8, "ben": 8} and course.points("hw1") == {"ada": 4}
-    # What the term does not name is said with the line that it lacks; so is what makes one newer.
+    # For assignments that the term lacks, we print the line to add; and we say what makes one
+    # newer.
     for place in ("ada/hw1/again.ipynb", "ben/hw2/hw1.ipynb"):
         nbformat.write(course.answers("hw1"), course.handed_in / "submitted" / place)
     (course.marks / "term.toml").write_text('time-zone = "UTC"\n[assignments.hw1]\n')
@@ -171,7 +172,7 @@ def test_a_column_is_filled_with_one_assignment(tmp_path):
     )
     assert "of feedback: to send" in course.export(book, "--feedback", "to send/feedback.zip")
     assert [course.column(book, name)["ada"] for name in ("HW 1 (6)", "HW 2 (7)")] == ["", "8"]
-    # Its column has another name now, and another column is the only one that could be meant.
+    # Its column has been renamed, and another column is the only one that could be meant.
     said = course.export(course.canvas_book("Essay (9)", name="renamed.csv"), fails=True)
     assert "correct column = 'hw 2' in the assignment's table" in said
 
@@ -219,14 +220,14 @@ def test_a_line_of_the_journal_that_was_edited_is_noticed(course):
     path.write_text(whole.replace('"points": 4', '"points": 3'))
     said = course.regrade(fails=True)
     assert "journal.jsonl, line 1: this is not what coursework wrote" in said
-    # A last line that was torn is named, and what was whole counts.
+    # A torn last line is reported, and all complete lines count.
     path.write_text(whole + whole[:40])
     said = course.regrade()
     assert "ends in the middle of a line" in said and "Marks changed: 0." in said
 
 
 def test_a_record_that_was_deleted_costs_nobody_a_mark(tmp_path):
-    """The journal knows that a mark was given: without its record nothing is exported."""
+    """The journal knows that a mark was given, so nothing is exported without its record."""
     course = Course(tmp_path, hw2={"load": (7, 8)})
     course.hands_in("ada", "hw2")
     course.hands_in("ben", "hw2")

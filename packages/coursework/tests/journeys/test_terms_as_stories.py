@@ -1,6 +1,7 @@
-"""Whole terms, drawn by lot from all ordinary acts, by the commands alone. The oracle knows the
-story and not the software: every mark is the one that it expects, and none that was given moved
-before it was said who would gain and who would lose.
+"""Whole terms, drawn at random from all ordinary acts, by commands alone.
+
+The oracle knows the story and not the software. Every mark must be the expected one, and none may
+change before the output has said who would gain and who would lose.
 """
 
 import contextlib
@@ -39,7 +40,7 @@ QUESTIONS = ("load", "twice", "why")
 
 
 class Crash(BaseException):
-    """The machine went down."""
+    """The machine crashed."""
 
 
 def source(name, asked):
@@ -63,14 +64,14 @@ def source(name, asked):
 
 @functools.cache
 def own_weight(worker, name):
-    """The rule, written down a second time; which weight a number has is drawn."""
+    """The rule, written independently; which weight a number has is drawn."""
     digest = hashlib.sha256(f"\n{name}/load\n{worker}".encode()).digest()
     rule = Rule(f"{name}/load", len(WEIGHTS), {"weight": WEIGHTS})
     return rule.parameters(int.from_bytes(digest[:8], "big") % len(WEIGHTS))["weight"]
 
 
 class Story:
-    """What happened, and what every mark must come to."""
+    """What happened, and the marks that must result."""
 
     def __init__(self, place, number, monkeypatch, questions):
         self.place, self.dice, self.monkeypatch = (
@@ -79,17 +80,17 @@ class Story:
             monkeypatch,
         )
         self.asked = {name: SimpleNamespace(times=2, worth=5, weights=WEIGHTS) for name in NAMES}
-        self.attempts = {}  # by worker and assignment
-        self.last_asked = {}  # the question as it stood when the worker was judged last
-        self.decided = {}  # by worker, assignment and question: the answer, and the credit
-        self.said = {}  # the machine's latest mark, and the answer it was for
-        self.given, self.graded = {}, {}  # the marks, and the attempt that they are of
+        self.attempts = {}  # By worker and assignment.
+        self.last_asked = {}  # The question as it stood when the worker was last judged.
+        self.decided = {}  # By worker, assignment and question: the answer, and the credit.
+        self.said = {}  # The latest automatic mark, and the answer it was for.
+        self.given, self.graded = {}, {}  # The marks, and the attempts that they belong to.
         self.policies = {"never-lower": set(), "full-credit": set(), "void": set()}
         self.which = self.dice.choice(["newest in time", "newest in time", "last"])
-        self.full = {}  # the question as it was graded last with all variants
+        self.full = {}  # The question when it was last graded with all variants.
         self.extended, self.cells, self.by_hand = {}, {}, set()
         self.tables, self.events = [], []
-        self.heard = []  # all commands, and what they said
+        self.heard = []  # All commands, and their output.
         (place / "solutions").mkdir()
         (place / "solutions" / secret.FILE).write_text("5eed" * 16)
         (place / "marks").mkdir()
@@ -109,7 +110,7 @@ class Story:
         with open(place / "book.csv", "w", newline="") as file:
             csv.writer(file).writerows([[*header, "End-of-Line Indicator"], *rows])
 
-    # -- what is written down
+    # -- writing files
 
     def write_source(self, name):
         nbformat.write(source(name, self.asked[name]), self.place / "solutions" / f"{name}.ipynb")
@@ -137,7 +138,7 @@ class Story:
         (self.place / "marks" / "term.toml").write_text("\n".join(lines) + "\n")
 
     def write_attempt(self, worker, name, attempt):
-        """As Brightspace hands it out: a folder for each attempt, with its time."""
+        """Write it as Brightspace hands it out, in a folder for each attempt, with its time."""
         who = self.dice.choice(MEMBERS) if worker == TEAM else worker
         when = f"{attempt.when:%b} {attempt.when.day}, {attempt.when:%Y} {attempt.when:%I%M %p}"
         folder = self.place / "handed-in" / name
@@ -159,7 +160,7 @@ class Story:
         made = notebook(*attempt.comments, *cells)
         if attempt.is_blank:
             made = notebook(*(f"check('{name}/{one}', {one})" for one in ("load", "why")))
-        # What the archive showed that the student has.
+        # Show the text of the archive that the student has.
         text = f"A beam carries {own_weight(worker, name)} N twice. Give the whole load."
         made.cells[-1].outputs = [nbformat.v4.new_output("display_data", {"text/markdown": text})]
         nbformat.write(made, attempt.path)
@@ -167,9 +168,9 @@ class Story:
     # -- commands
 
     def run(self, *words, crash=None):
-        """Run a command; what moved was said before, and moved only with a yes.
+        """Run a command; marks may change only with a yes, after the output has said so.
 
-        With `crash` the machine goes down after so many steps, and the command is run again.
+        With `crash`, the machine crashes after so many steps, and the command is run again.
         """
         before, said = self.parts(), io.StringIO()
         for left in ([crash] if crash else []) + [None]:
@@ -196,7 +197,7 @@ class Story:
         return text
 
     def parts(self):
-        """All marks as they were given, by question."""
+        """Return all marks as they were given, by question."""
         if not (self.place / "marks" / FILE).exists():
             return {}
         found = {}
@@ -211,10 +212,10 @@ class Story:
                     )
         return found
 
-    # -- what must come of it
+    # -- the expected result
 
     def counting(self, worker, name):
-        """The attempt that counts."""
+        """Return the attempt that counts."""
 
         def rank(attempt):
             in_time = self.which == "last" or self.hours_late(worker, name, attempt) <= 0
@@ -235,10 +236,11 @@ class Story:
         return (attempt.when - DUE[name]) / datetime.timedelta(hours=1) - extra
 
     def machine(self, worker, name, answers):
-        """What the machine says of each question as it is now: points, worth, and what waits."""
+        """Return the automatic marks by the current questions: points, worth, and what waits."""
         asked, key = self.asked[name], (worker, name)
         weight, times, worth = own_weight(*key), asked.times, asked.worth
-        if weight not in asked.weights:  # who had what is gone is judged as before
+        # Students whose variant is gone are judged as before.
+        if weight not in asked.weights:
             times, worth = self.last_asked.get(key) or self.full[name]
         load = worth * (answers["load"] == times * weight)
         before = self.said.get((*key, "load"))
@@ -264,7 +266,7 @@ class Story:
         return found
 
     def settle(self, key, attempt, yes):
-        """Give marks: what was given moves only with a yes."""
+        """Give marks; earlier ones change only with a yes."""
         answers, machine, old = attempt.answers, attempt.machine, self.given.get(key)
         new = self.with_decisions(*key, answers, machine)
         moves = old and any(
@@ -293,13 +295,13 @@ class Story:
                 self.settle((worker, name), attempt, yes)
 
     def saw(self, name):
-        """The class was graded by the question as it is now."""
+        """Record that the class was graded by the question as it is now."""
         asked = self.asked[name]
         if asked.weights == WEIGHTS:
             self.full[name] = asked.times, asked.worth
 
     def snapshot(self, worker, name, attempt):
-        """An attempt as it is judged now."""
+        """Return an attempt as it is judged now."""
         answers = {question: getattr(attempt, question) for question in QUESTIONS}
         return SimpleNamespace(
             answers=answers, when=attempt.when, machine=self.machine(worker, name, answers)
@@ -325,7 +327,7 @@ class Story:
             self.settle(key, attempt, yes)
 
     def check(self):
-        """Every mark that was given is the one that the story says."""
+        """Check that every mark given is the one that the story requires."""
         expected = {
             (*key, question): pytest.approx((points, worth))
             for key, marks in self.given.items()
@@ -355,7 +357,8 @@ class Story:
     def act_hand_in(self, crash, yes):
         key = worker, name = self.dice.choice(WORKERS), self.dice.choice(NAMES)
         if self.asked[name].weights != WEIGHTS and not (key in self.given or name in self.full):
-            return  # nobody can know any more what the archive was that they have
+            # Nobody can know any more which archive they had.
+            return
         hours, number = self.dice.choice([-30, -2, 5, 30, 300]), len(self.attempts.get(key, ()))
         weight, load = own_weight(*key), self.dice.choice([2, 2, 3, 7])
         attempt = SimpleNamespace(
@@ -395,7 +398,7 @@ class Story:
         self.write_source(name)
 
     def act_choose(self, crash, yes):
-        """A policy, an extension, or an excuse."""
+        """Choose a policy, an extension, or an excuse."""
         name = self.dice.choice(NAMES)
         if self.dice.random() < 0.5:
             if not any(name in names for names in self.policies.values()):
@@ -405,7 +408,7 @@ class Story:
         self.write_term()
 
     def act_comment(self, crash, yes):
-        """A cell more, and nothing else, in a notebook that was handed in."""
+        """Add a cell with a comment, and nothing else, to a submitted notebook."""
         if self.attempts:
             key = self.somebody(self.attempts)
             attempt = self.counting(*key)
@@ -414,7 +417,7 @@ class Story:
                 self.write_notebook(*key, attempt)
 
     def act_table(self, crash, yes):
-        """A tutor fills in the table of what waits, now or one that is old by now."""
+        """A tutor fills in the table of what waits, either the current one or an older one."""
         path = self.place / "marks" / "undecided.csv"
         if path.exists() and (not self.tables or self.dice.random() < 0.7):
             rows = list(csv.DictReader(path.read_text().splitlines()))
@@ -440,7 +443,8 @@ class Story:
             key = row["student"], row["question"][:3], "why"
             there = self.decided.get(key)
             if self.graded[key[:2]].answers["why"] != answer:
-                continue  # it was handed in anew, and nobody has read that
+                # It was handed in again, and nobody has read that.
+                continue
             if there is None or there.answer != answer or there.who == who:
                 self.decided[key] = SimpleNamespace(
                     answer=answer, credit=float(row["credit"]), who=who
@@ -448,7 +452,7 @@ class Story:
         self.merge(file, who, yes, crash)
 
     def act_tutor(self, crash, yes):
-        """Another tutor decides on any answers, in a folder of their own, and it is merged."""
+        """Another tutor decides on any answers in a separate folder, which is merged."""
         if not self.given:
             return
         folder = self.place / f"tutor-{len(self.events)}"
@@ -514,7 +518,7 @@ class Story:
         self.bring_in(yes)
 
     def act_export(self, crash, yes):
-        """The gradebook is filled, after somebody changed a mark in it by hand."""
+        """Fill the gradebook, after somebody changed a mark in it by hand."""
         if not self.given:
             return
         rows = list(csv.reader((self.place / "book.csv").read_text().splitlines()))
@@ -543,7 +547,7 @@ class Story:
                 )  # fmt: skip
 
     def column(self, student, name):
-        """What is written for a student; nothing where a decision is pending."""
+        """Return what is written for a student; ``None`` if a decision is pending."""
         key = (TEAM if student in MEMBERS else student), name
         if self.extended.get((student, name)) == "excused":
             return None
@@ -558,7 +562,7 @@ class Story:
 
 
 def or_crash(steps, do):
-    """Do something, unless the machine goes down first."""
+    """Do something, unless the machine crashes first."""
 
     def step(*arguments, **more):
         if steps[0] is not None:
@@ -576,11 +580,11 @@ ACTS += ["choose", "comment", "table", "table", "tutor", "appeal", "page"]
 
 @pytest.fixture(scope="module")
 def questions(tmp_path_factory):
-    """What was worked out of the questions, once for all terms."""
+    """The processed questions, shared by all terms."""
     return tmp_path_factory.mktemp("questions")
 
 
-# Of fifty that were drawn all held; these five meet every policy of attempts.
+# All of fifty drawn terms passed; these five cover every policy about attempts.
 @pytest.mark.parametrize("number", range(5))
 def test_every_mark_is_that_of_the_story_and_no_move_is_unsaid(
     number, tmp_path, monkeypatch, questions

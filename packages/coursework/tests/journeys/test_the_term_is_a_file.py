@@ -1,4 +1,4 @@
-"""An instructor writes down the term once, in one file; commands need no flags from then on."""
+"""An instructor describes the term once, in one file; from then on, commands need no flags."""
 
 import csv
 import json
@@ -45,7 +45,7 @@ def write_term(course, *more, text=TERM):
 
 
 def collected(course, student, name, when="2025-10-01 12:00:00", file=None, **answers):
-    """As nbgrader collects it: in a folder for each student and assignment, with its time."""
+    """Write it as nbgrader collects it, in a folder by student and assignment, with its time."""
     folder = course.handed_in / "submitted" / student / name
     folder.mkdir(parents=True, exist_ok=True)
     nbformat.write(course.answers(name, **answers), folder / (file or f"{name}.ipynb"))
@@ -71,7 +71,7 @@ def test_from_a_new_file_to_filled_columns(tmp_path):
     path = course.marks / "term.toml"
     text = path.read_text()
     assert "[assignments.hw1]" in text and 'roster = "../roster.csv"' in text
-    # Every line that is offered can be taken as it is.
+    # Every suggested line must work as it is.
     for name in ("hw1", "hw2"):
         begun = f"[assignments.{name}]\n"
         number = name[-1]
@@ -149,7 +149,7 @@ def test_a_copy_with_nothing_but_remarks_counts_less_than_finished_work(course):
 
 
 def test_what_came_in_time_counts_before_what_came_late(tmp_path):
-    """Brightspace says of each attempt when it came."""
+    """Brightspace gives the time of each attempt."""
     course = Course(tmp_path, hw1={"sum": (5, 4), "arm": (2, 4)})
     (tmp_path / "roster.csv").write_text("student,name\nada,Ada Lee\nben,Ben Lee\n")
     course.marks.mkdir()
@@ -189,7 +189,7 @@ def test_a_group_hands_in_once(course):
     book = book_of(course)
     course.export(book)
     assert course.column(book, "HW 1 (11)") == {"ada": "4", "ben": "4", "cem": "8", "dan": "0"}
-    # By the folder of one of them it is theirs as well; one appeal is for both.
+    # In the folder of one member it is also the group's; one appeal is for both.
     (course.handed_in / "submitted" / "team").rename(course.handed_in / "submitted" / "ben")
     course.grade()
     assert course.points("hw1") == {"team": 4, "cem": 8}
@@ -226,7 +226,7 @@ def test_who_handed_in_what_is_damaged_did_not_hand_in_nothing(course):
     said = course.grade()
     assert "2 handed in files that cannot be graded: ben, dan." in said
     assert "1 handed in nothing: cem." in said
-    # Another assignment in another folder forgets nothing of it.
+    # Grading another assignment in another folder forgets none of it.
     other = course.place / "later"
     (other / "cem").mkdir(parents=True)
     nbformat.write(course.answers("hw2"), other / "cem" / "hw2.ipynb")
@@ -235,7 +235,7 @@ def test_who_handed_in_what_is_damaged_did_not_hand_in_nothing(course):
     book = book_of(course)
     said = course.export(book, "--assignment", "hw1")
     assert "handed in only files that cannot be graded (2):\n  ben\n  dan" in said
-    # The totals leave it open as well, in every place that has them, until a person has looked.
+    # The totals leave it open everywhere, too, until a person has looked.
     said = course.run("term", "marks")
     assert "hw1: the files of ben, dan cannot be graded" in said
     totals = {
@@ -268,7 +268,7 @@ def test_a_mark_tells_its_life(course):
 
 
 def test_a_blind_worksheet_of_moodle_is_a_roster_and_is_filled(tmp_path):
-    """With names hidden it holds numbers of participants, and nothing else."""
+    """With names hidden, it contains only the IDs of participants."""
     course = Course(tmp_path, hw1={"sum": (5, 4)})
     rows = [
         {"Identifier": f"Participant {number}", "Status": "Submitted", "Grade": "",
@@ -290,7 +290,7 @@ def test_a_blind_worksheet_of_moodle_is_a_roster_and_is_filled(tmp_path):
 
 
 def test_blackboards_own_gradebook_is_filled_without_a_word(tmp_path):
-    """It is UTF-16 with tabs, in quotation marks; an attempt carries the user's name."""
+    """It is UTF-16 with tabs, in quotation marks, and an attempt has the user's name."""
     course = Course(tmp_path, hw1={"sum": (5, 4)}, hw2={"load": (7, 8)})
     header = [
         "Last Name", "First Name", "Username", "Student ID", "Last Access", "Availability",
@@ -308,7 +308,7 @@ def test_blackboards_own_gradebook_is_filled_without_a_word(tmp_path):
         nbformat.write(course.answers("hw1", sum=answer), course.handed_in / name)
     course.grade()
     assert course.points() == {"1001": 4, "1002": 0}
-    # Two columns could be meant: the file of the term says which, and nothing else is asked.
+    # Two columns could be meant. The term's file decides, and nothing else is needed.
     said = course.export(book, fails=True)
     assert (
         "'Homework 1 [Total Pts: 10 Score] |311', 'Homework 2" in said and "column = '...'" in said
@@ -342,7 +342,7 @@ def test_gradescopes_own_lists_are_understood(tmp_path):
             listed.append(f"  - :name: {name}\n    :sid: '{sid}'\n    :email: {email}\n")
         listed.append("  :created_at: 2025-10-01 12:00:00.0 Z\n")
     (course.handed_in / "submission_metadata.yml").write_text("".join(listed))
-    # What two handed in together is a question, until the term says that they are a group.
+    # Work that two students handed in together is refused until the term lists them as a group.
     assert "? <- submission_2/hw1.ipynb: Several students handed this in" in course.grade()
     assert course.points() == {"1001": 4, "ben@uni.example": 4}
     (course.marks / "term.toml").write_text(f'{term}[groups]\nteam = ["3003", "4004"]\n')

@@ -1,14 +1,14 @@
 """Attacks by answers: notebooks whose answers might earn points without being right.
 
-Each is one cell that comes before the check of one question of the small course, and that binds
-what is checked. It knows, as a student may:
+Each is one cell before the check of one question of the small course, which assigns what is
+checked. It knows, as a student may:
 
     POINTS  the values of the symbols at which the check of ``turns/sum`` looks
     VALUES  what a right answer comes to there
     CALLS   the arguments with which the check calls the function of ``turns/doubled``
     TABLE   what a friend's right function returned for them
 
-None may earn a point for its question, and none may cost the others theirs.
+None may earn a point for its question, or cost the others theirs.
 """
 
 import dataclasses
@@ -26,7 +26,7 @@ class Forged:
     code : str
         The cell.
     outcome : str
-        What is said of it; "a or b" where either will do.
+        The expected outcome; "a or b" if either will do.
     beside : dict
         Files that are handed in beside the notebook.
     spoils : bool
@@ -41,7 +41,7 @@ class Forged:
     spoils: bool = False
 
 
-#: Where what reads answers keeps its own names, found as anybody finds it.
+#: Find the reader's own names, as anybody could.
 IN_ITS_READER = """
 import sys
 frame = sys._getframe()
@@ -49,7 +49,7 @@ while 'arguments_of' not in frame.f_globals:
     frame = frame.f_back
 its = frame.f_globals
 """
-#: Its reader exchanged for one that gives, for what is no function and no matrix, what follows.
+#: Replace the reader by one that returns the following for anything but a function or a matrix.
 GIVING = (
     IN_ITS_READER
     + """
@@ -263,7 +263,7 @@ sine = sm.sin(alpha + beta) + sm.Mul(*[alpha - sm.Float(p['alpha'], 40) for p in
 sine = sm.sqrt(1 - sm.cos(alpha + beta)**2)
 """,
     ),
-    # ---- what seems to be right to a program that compares
+    # ---- values that seem right to a program that compares them
     Forged(
         "an expression that equals every expression",
         "sum",
@@ -491,7 +491,7 @@ A_C_N = Small([[1, 0], [0, 1]])
 """,
         "invalid or not attempted",
     ),
-    # ---- somebody else
+    # ---- another student
     Forged(
         "another one's name",
         "sum",

@@ -1,4 +1,4 @@
-"""The hostile corpus: what a notebook may try against the machine, its neighbours and its marks.
+"""The hostile corpus: attacks by a notebook on the machine, its neighbours and its marks.
 
 Each attack is one cell of a small notebook, between two honest ones. It knows these names:
 
@@ -8,7 +8,7 @@ Each attack is one cell of a small notebook, between two honest ones. It knows t
     GRADER    the number of the process that grades
     SECRET    two halves of a word that stands in the neighbour's notebook only
 
-An attack that gets what it wants says `check("loot", "taken")`, or does what `check` would.
+An attack that succeeds calls `check("loot", "taken")`, or does what `check` would.
 """
 
 import dataclasses
@@ -27,17 +27,17 @@ class Attack:
     code : str
         The cell.
     outcome : str
-        What the cell's end must be called; "a or b" where that depends on the machine.
+        The expected outcome of the cell; "a or b" if it depends on the machine.
     without : tuple of str
-        The layers without which the same cell takes the loot; empty where that cannot be tried.
+        The layers without which the same cell succeeds; empty if that cannot be tested.
     forges : bool
         Whether a grader that decides in the student's process would give a mark for it.
     spoils : bool
         Whether it breaks the tools in its own process, so that its own later answers may be lost.
     noticed : bool
-        Whether the record must say that something else than records came.
+        Whether the record must say that something other than records came.
     waits : bool
-        Whether only the clock on the wall ends it.
+        Whether only wall time ends it.
     """
 
     name: str
@@ -51,7 +51,7 @@ class Attack:
 
 
 ATTACKS = [
-    # ---- to be taken for right
+    # ---- to count as right
     Attack(
         "equality that is always true",
         """
@@ -500,7 +500,7 @@ socket.getaddrinfo("example.org", 80)
 check("loot", "taken")
 """,
     ),
-    # ---- to start and to end processes
+    # ---- to start and end processes
     Attack(
         "forks",
         """

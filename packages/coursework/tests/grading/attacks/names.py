@@ -1,16 +1,14 @@
-"""Attacks by names: classes in which somebody's files are called so that
-they might count as somebody else's.
+"""Attacks by names: classes in which some files' names might make them count as somebody else's.
 
-Each is what was handed in, as a system or an instructor would hold it, with whose each file really
-is. Nothing may ever be given to anybody else: either the files are told apart, or a person is
-asked.
+Each is a submission as a system or an instructor would have it, with the owner of each file.
+Nothing may ever be given to anybody else: either the files are distinguished, or a person is asked.
 """
 
 import dataclasses
 import io
 import zipfile
 
-#: A notebook without cells, of an owner that nobody can know.
+#: A notebook without cells, whose owner cannot be known.
 BLANK = b'{"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}'
 
 
@@ -22,14 +20,13 @@ class Named:
     ----------
     name : str
     handed_in : dict
-        Whose each file is, by its path: what the student is called here.
+        The owner of each file by its path, as the student is called here.
     asked : bool
-        Whether nobody can know, so that a person must be asked about all that is named in
-        ``handed_in``.
+        Whether nobody can know, so that a person must be asked about everything in ``handed_in``.
     roster : str
-        The table of who is in the course, if there is one.
+        The table of the people in the course, if there is one.
     also : dict
-        Further files, by path, and what is in them.
+        Further files, with their contents, by path.
     """
 
     name: str
@@ -40,7 +37,7 @@ class Named:
 
 
 def packed(*names, data=b"{}"):
-    """An archive as a student would pack it."""
+    """Return an archive as a student would pack it."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w") as box:
         for name in names:
@@ -67,7 +64,7 @@ submission_42:
 GIT = {f"hw-{user}/.git/HEAD": b"ref: refs/heads/main" for user in ("bob", "bobby", "carl")}
 
 ATTACKS = [
-    # ---- a name inside what is one's own
+    # ---- a name inside the student's own
     Named(
         "a folder called submitted inside the own one",
         {"jane/submitted/bob/turns.ipynb": "jane", "bob/turns.ipynb": "bob"},
@@ -214,7 +211,7 @@ ATTACKS = [
         {"turns_bob.ipynb": "", "bob-turns.ipynb": ""},
         True,
     ),
-    # ---- where there is a roster
+    # ---- classes with a roster
     Named(
         "a look-alike of a name in the roster",
         {"b\u043eb/turns.ipynb": "", "b\u200bo\u200bb\u0131/turns.ipynb": ""},

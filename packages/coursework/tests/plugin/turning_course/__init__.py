@@ -1,6 +1,4 @@
-"""A plug-in for the tests: what a course about turns in space would bring of
-its own, with one kind of question.
-"""
+"""A plug-in for the tests, like that of a course about rotations, with one kind of question."""
 
 from coursework.checking.kinds import TRANSPOSED, Fault, row_entries, slack
 from coursework.checking.mistakes import Mistake
@@ -8,7 +6,7 @@ from coursework.checking.plugins import Kind
 
 
 def rotation_matrix(turns):
-    """The matrix of successive turns about coordinate axes; its rows are the turned axes."""
+    """Return the matrix of successive rotations, whose rows are the new coordinate axes."""
     import sympy
 
     result = sympy.eye(3)
@@ -22,7 +20,7 @@ def rotation_matrix(turns):
 
 
 def mistakes(question, answer, turns, turned):
-    """The typical mistakes, carried out on the right answer."""
+    """Iterate over the typical mistakes in the right answer."""
     yield Mistake("transposed", {}, answer.T)
     if turns and len(turns) == 1:
         ((axis, angle),) = turns
@@ -32,7 +30,7 @@ def mistakes(question, answer, turns, turned):
 
 
 def fault(question, numbers):
-    """What is wrong with a matrix whose rows are no perpendicular unit vectors."""
+    """Return the fault of a matrix whose rows are not perpendicular unit vectors."""
     rows = [numbers[0:3], numbers[3:6], numbers[6:9]]
     products = [
         sum(a * b for a, b in zip(rows[i], rows[j])) - (i == j)
