@@ -40,7 +40,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     ]
     parser = argparse.ArgumentParser(
         prog="coursework",
-        usage=None if rooms else _STUDENTS_USAGE,  # Every error about a command shows it.
+        # Every error about a command shows it.
+        usage=None if rooms else _STUDENTS_USAGE,
         description="Make, grade and update self-checking exercises.",
         epilog="Run coursework COMMAND --help for the options of a command.",
     )

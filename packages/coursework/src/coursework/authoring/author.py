@@ -812,7 +812,8 @@ def question(
     except Misread as error:
         raise AuthorError(str(error)) from None
     for symbol, (low, high) in public.symbols.items():
-        if not abs(high - low) <= WIDEST:  # This form also rejects NaN.
+        # This form also rejects NaN.
+        if not abs(high - low) <= WIDEST:
             raise AuthorError(
                 f"{name}: {symbol!r} is tried from {low:g} to {high:g}, but a range must be at "
                 f"most {WIDEST} wide. It need not be realistic: (0.5, 3) will do for any length, "

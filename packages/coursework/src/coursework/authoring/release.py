@@ -69,7 +69,7 @@ class AboutAnswer(NamedTuple):
 
 
 class Made(NamedTuple):
-    """What was made of a notebook.
+    """The results of releasing a notebook.
 
     Attributes
     ----------

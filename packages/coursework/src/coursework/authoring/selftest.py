@@ -83,7 +83,8 @@ class Finding(NamedTuple):
     name: str
     kind: str
     forms: list[str]
-    mistakes: list[tuple[str, str]]  # The note and the message.
+    # The note and the message.
+    mistakes: list[tuple[str, str]]
     unmoved: list[str]
     possible: int | None
     worth: float

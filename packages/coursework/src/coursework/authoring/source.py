@@ -199,7 +199,8 @@ def read_source(
     cells_of(path)
     notebook = nbformat.read(path, as_version=4)
     for number, cell in enumerate(notebook.cells):
-        cell.source = cell.source.replace("\r\n", "\n")  # Windows editors may write this.
+        # Windows editors may write this.
+        cell.source = cell.source.replace("\r\n", "\n")
         if cell.cell_type == "code":
             _demand_marks(cell.source, f"{path.name}, cell {number}")
     answers: dict[str, object] = {}

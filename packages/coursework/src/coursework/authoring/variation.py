@@ -43,7 +43,7 @@ Pool = Iterable[Any] | Callable[[random.Random], Any]
 
 @dataclass(frozen=True)
 class Rule:
-    """What may vary in a question.
+    """The rule for a question's variants.
 
     Attributes
     ----------

@@ -276,7 +276,8 @@ def progress() -> Reply:
 
 def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) -> str:
     questions: dict[str, float] = {name: 1 for name in record if name.startswith(f"{notebook}/")}
-    with suppress(RuntimeError):  # of another release
+    # The notebook may be from another release.
+    with suppress(RuntimeError):
         known = notebook_questions(notebook)
         questions = {name: sealed.worth for name, sealed in known.items()} or questions
     points = sum(questions.values())
@@ -347,7 +348,8 @@ def _remember(name: str, student: str, question: Question, reply: Reply) -> Entr
             entry, outcome=reply.outcome, help=entry.help or ("mistake" if helped else "")
         )
     entry = replace(entry, note=reply.note)
-    if reply.outcome == "wrong" and reply.note != OTHER_NUMBERS:  # which is no try at one's own
+    # An answer for other numbers is no try at one's own.
+    if reply.outcome == "wrong" and reply.note != OTHER_NUMBERS:
         answers = entry.answers
         if reply.answer not in answers and len(answers) < MOST_ANSWERS:
             answers = *answers, reply.answer
@@ -358,7 +360,8 @@ def _remember(name: str, student: str, question: Question, reply: Reply) -> Entr
             entry, answers=answers, page=page, mistake=mistake, mistake_at=int(time.time())
         )
     elif reply.outcome == "correct" and entry.mistake_at < time.time() - REVIEW_AFTER * DAY:
-        entry = replace(entry, mistake="")  # reviewed, and right
+        # The mistake was reviewed, and the answer is right.
+        entry = replace(entry, mistake="")
     changed = {name: entry}
     if reply.opened and reply.opened.place and reply.outcome == "correct":
         for later_question in reply.opened.after:

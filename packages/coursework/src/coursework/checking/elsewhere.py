@@ -16,6 +16,7 @@ def fetched(file: Traversable, name: str) -> str:
         if request.status == 200:
             return str(request.responseText)
         why = f"the server answered {request.status}"
-    except Exception as error:  # the browser's error without a network
+    # Without a network, this is an error of the browser's.
+    except Exception as error:
         why = str(error)
     raise RuntimeError(f"We could not fetch your numbers from {address} ({why}). Are you online?")

@@ -160,7 +160,8 @@ def _leaf(operation: str, parts: Sequence[str], point: Mapping[str, Number]) -> 
         return MP.mpf(int(text))
     if operation == "float":
         return _bounded(MP.mpf(text))
-    if text in ("ComplexInfinity", "NaN"):  # SymPy's results of 1/0 and of 0/0
+    # These are SymPy's results of 1/0 and of 0/0.
+    if text in ("ComplexInfinity", "NaN"):
         raise Undefined("division by zero" if text == "ComplexInfinity" else NOT_A_NUMBER)
     if text not in CONSTANTS:
         raise NotSupported(text)

@@ -50,7 +50,8 @@ def student(identity: str = "") -> None:
             if _identity
             else FORGOTTEN
         )
-    with suppress(OSError):  # in a read-only folder, each notebook asks again
+    # In a read-only folder, each notebook asks again.
+    with suppress(OSError):
         if _identity:
             KEPT.parent.mkdir(exist_ok=True)
             KEPT.write_text(_identity, "utf8")

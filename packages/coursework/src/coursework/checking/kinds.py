@@ -105,7 +105,7 @@ def _describe(value: Value) -> str:
 
 
 def _holding(whole: Value, part: Value) -> str:
-    """Describe a list of which one part has the wrong kind."""
+    """Describe a list that contains one part of the wrong kind."""
     if is_blank(part):
         return "a list with blanks"
     if part[0] == "text":
@@ -125,7 +125,8 @@ def leaf(value: Value, expected: str) -> int:
         [entry] = entries_of(value)
         return entry
     parts = parts_of(value) if value[0] == "list" else []
-    if parts and parts[1:] in ([], [["text", "1"]]):  # degrees are no unit
+    # Degrees are not a unit.
+    if parts and parts[1:] in ([], [["text", "1"]]):
         return leaf(parts[0], expected)
     if value[0] != "expression":
         raise _fault_of_numbers(expected, value)

@@ -305,7 +305,8 @@ class _Writer:
 
     def parts(self, answer: Sequence[object], depth: int) -> Value:
         if len(answer) == 2 and _has_unit(answer[1]) and not _has_unit(answer[0]):
-            return self.value(sympy.sympify(answer[0]) * answer[1], depth)  # (3.2, newton * meter)
+            # This is a number with a unit, such as (3.2, newton * meter).
+            return self.value(sympy.sympify(answer[0]) * answer[1], depth)
         if len(answer) > MOST_PARTS:
             raise NotPlain(
                 f"The answer has {len(answer)} parts, but no question asks for that many."
@@ -401,7 +402,8 @@ class _Writer:
         if isinstance(answer, BooleanAtom):
             return ["truth", bool(answer)]
         if isinstance(answer, sympy.UnevaluatedExpr):
-            return self.value(answer.args[0], depth)  # which may be a matrix
+            # Its argument may be a matrix.
+            return self.value(answer.args[0], depth)
         if _has_unit(answer):
             number, unit = _number_and_unit(answer, sys.modules["sympy.physics.units"])
             parts: list[Value] = [["expression", self.expression(number)], ["text", unit]]
@@ -505,7 +507,8 @@ class _Writer:
             except TooMuchWork:
                 self.gave_up += 1
             except Exception:
-                pass  # a part that SymPy cannot evaluate has no value here
+                # A part that SymPy cannot evaluate has no value here.
+                pass
         return part
 
     def children(self, part: sympy.Basic) -> tuple[sympy.Basic, ...]:
@@ -615,7 +618,8 @@ def _spelled(letter: str) -> str:
 
 
 def _text(text: str) -> str:
-    text = str(text)  # a subclass, such as NumPy's, is not a string in JSON
+    # A subclass, such as NumPy's, is not a string in JSON.
+    text = str(text)
     if len(text) > LONGEST_TEXT:
         raise NotPlain(f"This string of {len(text)} characters is too long for an answer.")
     return text

@@ -27,7 +27,8 @@ from importlib import metadata, resources
 from importlib.resources.abc import Traversable
 from types import ModuleType
 
-from .kind import Kind as Kind  # Plug-ins import it from here.
+# Plug-ins import it from here.
+from .kind import Kind as Kind
 from .kinds import KINDS
 from .question import Question
 

@@ -19,7 +19,7 @@ POINTS = 5
 # The default range of an angle: in all four quadrants, so that no root is taken for the cosine it
 # equals in the first one, and within a half turn, where half-angle forms hold.
 ANGLES = (-3.0, 3.0)
-# Letters of which SymPy has two forms and handwriting one.
+# Letters that have two forms in SymPy and one in handwriting.
 TWINS = {"phi": "varphi", "varphi": "phi", "epsilon": "varepsilon", "varepsilon": "epsilon"}
 # Spellings of a derivative with respect to time, ``theta'``, as a symbol.
 RATES = ("{}dot", "{}_dot", "dot_{}", "d{}", r"\dot{{{}}}", r"\dot{{\{}}}")

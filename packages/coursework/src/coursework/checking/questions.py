@@ -206,7 +206,8 @@ def find_question(name: str, student: str) -> Sealed:
         raise NoSuchQuestion(
             f"'{name}' is a notebook. Its questions are {', '.join(map(repr, questions))}."
         )
-    import difflib  # Only this needs it.
+    # Only this needs it.
+    import difflib
 
     nearest = difflib.get_close_matches(notebook.lower(), notebooks, 1, cutoff=0)
     near = difflib.get_close_matches(name.lower(), notebook_questions(nearest[0]), cutoff=0.5)

@@ -291,7 +291,8 @@ def _read_function(question: Question, plain: Plain) -> Reading:
     returned = parts_of(value)
     if all(map(is_blank, returned)):
         if not value[2]:
-            raise Blank  # The body of the function is still empty.
+            # The body of the function is still empty.
+            raise Blank
         raise Fault(
             "returned nothing",
             "The function computes something but returns nothing. End it with a line that begins "

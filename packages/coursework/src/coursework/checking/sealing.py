@@ -232,7 +232,8 @@ def unseal(sealed: str, key: bytes) -> Any:
     if not hmac.compare_digest(tag, _tag(hidden, key, "page")[:PAGE_TAG]):
         raise ValueError("The sealed data does not match this key, or has been changed.")
     data = _mask(hidden, key, "page")
-    return json.loads(zlib.decompress(data[4:]))  # The rest is padding.
+    # The rest is padding.
+    return json.loads(zlib.decompress(data[4:]))
 
 
 def shorten(text: str, words: str) -> str:

@@ -18,7 +18,7 @@ from .fields import Fields, by_name, many, text, whole
 
 #: The file of a package: its name and its version.
 WHEEL = re.compile(r"(?P<name>[A-Za-z0-9_.]+)-(?P<version>[^-]+)-[^-]+-[^-]+-[^-]+\.whl")
-#: What a browser adds to the name of a second download: (1) or -1.
+#: The number that a browser adds to the name of a second download: (1) or -1.
 NUMBERED = re.compile(r" ?\(\d+\)$|[- ]\d+$")
 REQUIREMENTS = "requirements.txt"
 # The folder of the sealed questions, which students do not change, so newer ones replace older
@@ -62,7 +62,8 @@ def digest_of(name: str, data: bytes) -> str:
                 [[cell["cell_type"], "".join(cell["source"])] for cell in cells]
             ).encode()
         except (ValueError, KeyError, TypeError):
-            pass  # it is no notebook, so use its bytes
+            # It is not a notebook, so use its bytes.
+            pass
     return hashlib.sha256(data).hexdigest()[:32]
 
 
@@ -275,7 +276,8 @@ def _handed_out(folder: Path) -> tuple[dict[str, str], list[str]]:
         # An unpacked archive lists its files and names no archive.
         archives = about.maybe("archives", many(text)) or (_digest_of_all(files),)
     except (OSError, ValueError):
-        return {}, []  # files of unknown origin count as the student's
+        # Files of unknown origin count as the student's.
+        return {}, []
     if format != FORMAT:
         raise ArchiveRefused(
             f"{MANIFEST} in this folder has format {format}, but the installed coursework reads "

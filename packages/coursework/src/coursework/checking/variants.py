@@ -61,7 +61,8 @@ def names_of_variants(variants: Iterable[Variant]) -> list[str]:
     for variant in variants:
         content = json.dumps({**variant.shown, **variant.given}, sort_keys=True)
         name = hashlib.sha256(content.encode()).hexdigest()[:12]
-        while name in names:  # two variants with the same content
+        # Two variants have the same content.
+        while name in names:
             name += "+"
         names.append(name)
     return names

@@ -248,7 +248,8 @@ class _Printer:
             digits = "/".join(rest)
             size = abs(float(digits)) if operation == "float" else None
             if size is not None and (size == 0 or 1e-300 < size < 1e300):
-                digits = f"{float(digits):.10g}"  # These are enough digits to recognise a number.
+                # These are enough digits to recognise a number.
+                digits = f"{float(digits):.10g}"
             tight = around > 1 and ("/" in digits or digits.startswith("-"))
             return f"({digits})" if tight else digits
 

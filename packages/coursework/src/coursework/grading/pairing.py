@@ -25,7 +25,7 @@ MOST_SHOWN = 40
 
 
 class Work(NamedTuple):
-    """What one student, or one group, handed in for one assignment.
+    """One student's, or one group's, submissions for one assignment.
 
     Attributes
     ----------

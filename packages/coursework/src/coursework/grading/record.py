@@ -56,7 +56,7 @@ class Answer(AsJson):
 
 @dataclass(frozen=True)
 class Remembered(AsJson):
-    """What the outputs of a notebook remember about the attempts at a question.
+    """The attempts at a question that a notebook's outputs remember.
 
     Attributes
     ----------

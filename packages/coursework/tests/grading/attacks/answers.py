@@ -3,8 +3,8 @@
 Each is one cell before the check of one question of the small course, which assigns what is
 checked. It knows, as a student may:
 
-    POINTS  the values of the symbols at which the check of ``turns/sum`` looks
-    VALUES  what a right answer comes to there
+    POINTS  the values of the symbols at which the check of ``turns/sum`` compares
+    VALUES  the values of a right answer there
     CALLS   the arguments with which the check calls the function of ``turns/doubled``
     TABLE   what a friend's right function returned for them
 

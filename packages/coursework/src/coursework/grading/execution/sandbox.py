@@ -109,14 +109,18 @@ class Limits:
     answer_seconds: float = 10
     answer_wall_seconds: float = 20
     notebook_seconds: float = 60
-    notebook_wall_seconds: float = 180  # For all runs of the notebook together.
-    grace_seconds: float = 1  # Wall time after a limit before the process is killed.
-    memory_bytes: int = 1 << 30  # In addition to the libraries.
+    # For all runs of the notebook together.
+    notebook_wall_seconds: float = 180
+    # Wall time after a limit, before the process is killed.
+    grace_seconds: float = 1
+    # In addition to the libraries.
+    memory_bytes: int = 1 << 30
     file_bytes: int = 32 << 20
     scratch_bytes: int = 64 << 20
     open_files: int = 256
     threads: int = 64
-    runs: int = 8  # Of one notebook, in each order.
+    # Of one notebook, in each order.
+    runs: int = 8
 
     def for_child(self) -> LimitsOfChild:
         """Return the limits in the form that the confined process takes."""

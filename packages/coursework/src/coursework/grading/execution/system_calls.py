@@ -150,9 +150,11 @@ ALLOWED_FOR = {
     # Names of threads and of memory areas
     "prctl": ((157, 167), 0, (3, 15, 16, 23, 0x53564D41)),
 }
-ONLY_ITSELF = {"kill": (62, 129), "tgkill": (234, 131)}  # The first argument is its own ID.
+# The first argument must be the process's own ID.
+ONLY_ITSELF = {"kill": (62, 129), "tgkill": (234, 131)}
 CLONE, PRLIMIT, SECCOMP = (56, 220), (302, 261), (317, 277)
-CLONE_THREAD, CLONE_NEW = 0x00010000, 0x7E020080  # The second: every kind of new namespace.
+# The second contains every kind of new namespace.
+CLONE_THREAD, CLONE_NEW = 0x00010000, 0x7E020080
 # From this number on, all processors share the numbers, and C libraries work without the calls.
 FIRST_NEW = 424
 

@@ -61,7 +61,8 @@ Start = TypedDict(
         "base": str,
         "threads in use": int,
         "user": int,
-        "why no namespaces": str,  # Empty within namespaces.
+        # Empty within namespaces.
+        "why no namespaces": str,
     },
 )
 

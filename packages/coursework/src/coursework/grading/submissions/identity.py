@@ -48,7 +48,7 @@ Parts = tuple[str, ...]
 
 
 class Claim(NamedTuple):
-    """What a file's path claims about who handed it in.
+    """The claim that a file's path makes about who handed it in.
 
     Attributes
     ----------
