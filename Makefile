@@ -15,7 +15,7 @@ export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve new-chapter new-question check test test-rest take-away numpy notebooks release renew-pins benchmark anywhere oldest mutants programs clean
+.PHONY: help setup book serve new-chapter new-question check quick test test-rest take-away numpy notebooks release renew-pins benchmark anywhere oldest mutants programs clean
 
 help:
 	@echo "make book       build the site into _build/html"
@@ -25,6 +25,7 @@ help:
 	@echo "make new-chapter NAME=belt-trick TITLE='The belt trick'   add a chapter with all its parts (AFTER=gimbal-lock puts it after that chapter, not at the end)"
 	@echo "make new-question NAME=belt-trick/twist TITLE='A twist' KIND='quaternion'   add a question to that chapter"
 	@echo "make check      check style, types, pins and the parts of each chapter (builds nothing)"
+	@echo "make quick      run the tests of what has changed since main, or since another commit (BASE=HEAD~1)"
 	@echo "make test       test the book and its software (takes minutes)"
 	@echo "make test-rest  run the tests that make test leaves out: the whole book on paper, other browsers, clusters"
 	@echo "make notebooks  run every notebook and store its outputs"
@@ -101,6 +102,10 @@ new-question: setup
 
 check: $(VENV)/ready-test setup
 	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/test_budget.py tests/chapters/test_chapters.py
+
+BASE ?= main
+quick: $(VENV)/ready-test book
+	@tests=$$($(RUN) -m tools.touched $(BASE)) && echo "Tests: $$tests" && $(RUN) -m pytest -n auto -m "not long" $$tests
 
 # Tests that are slow and rarely fail are left to `make test-rest`. `.ci/run` runs both.
 test: $(VENV)/ready-test book
