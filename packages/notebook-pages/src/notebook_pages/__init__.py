@@ -14,6 +14,10 @@ MISSING = (
     "After that, `.venv/bin/jupyter-book build .` works as well."
 )
 
+# With this optional package, jsonschema (and so nbformat) takes two seconds to import: it builds 38
+# parsers of international addresses, which nothing here needs.
+sys.modules.setdefault("rfc3987_syntax", None)  # type: ignore[arg-type]
+
 
 def setup(app):
     # SystemExit passes through Sphinx and Jupyter Book without a traceback.
