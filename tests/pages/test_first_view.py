@@ -133,15 +133,16 @@ def test_figures_are_brought_to_life_when_the_first_view_stands(open_page):
 
 
 def test_link_within_a_page_leads_to_its_place_at_once(open_page):
-    page = open_page(LONG, script=HOLD)
+    page = open_page(LONG, "narrow", HOLD, has_touch=True)
     page.wait_for_function("held.length")
     assert page.evaluate("document.documentElement.matches('.in-parts')")
     heading = page.locator(".bd-article > section > section").last
-    heading.evaluate("(section) => section.querySelector('a.headerlink').click()")
+    page.locator("button.secondary-toggle").tap()
+    page.locator("dialog[open] .page-toc > ul > li > a, dialog[open] nav > ul > li > a").last.tap()
     page.wait_for_function(
         "(box) => Math.abs(box.getBoundingClientRect().top) < 120", arg=heading.element_handle()
     )
-    assert not page.evaluate("document.documentElement.matches('.in-parts')")
+    assert not page.evaluate("document.querySelector('html.in-parts, dialog[open]')")
 
 
 def test_lecture_mode_begins_with_the_whole_page(open_page):

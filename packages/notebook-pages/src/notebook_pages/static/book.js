@@ -110,7 +110,7 @@ document.addEventListener("copy", (event) => {
   const chosen = getSelection();
   if (event.defaultPrevented || chosen.isCollapsed) return;
   const range = chosen.getRangeAt(0).cloneRange();
-  const around = (node) => (node.closest ? node : node.parentElement).closest(".katex");
+  const around = (node) => (node.closest ? node : node.parentElement).closest(".katex-display, .katex:not(.katex-display *)");
   const [first, last] = [around(range.startContainer), around(range.endContainer)];
   if (first) range.setStartBefore(first);
   if (last) range.setEndAfter(last);
@@ -146,9 +146,7 @@ report?.addEventListener("click", () => {
 // Close the take-away menu like any menu: by Escape, or by a click elsewhere.
 const menu = document.querySelector("details.take-away");
 if (menu) {
-  document.addEventListener("click", (event) => {
-    if (!menu.contains(event.target)) menu.open = false;
-  });
+  document.addEventListener("click", ({ target }) => { menu.open &&= menu.contains(target); });
   menu.addEventListener("keydown", (event) => {
     if (event.key === "Escape" && menu.open) {
       menu.open = false;
@@ -158,14 +156,15 @@ if (menu) {
 }
 
 // Numbers in columns and lines of code keep their lines: on a narrow screen they scroll. Same as in live/js/output.js.
-for (const text of document.querySelectorAll("div.cell_output .output pre")) {
+for (const text of document.querySelectorAll("div.cell_output .output pre"))
   text.classList.toggle("columns", Boolean(text.closest(".text_plain")) || /^ *\[|^ {4}|\S {2,}\S/m.test(text.textContent));
-}
 
 // Hide the result of a check that nobody has answered yet, which the dots in its cell show.
-for (const output of document.querySelectorAll("div.cell_output > .output")) {
+for (const output of document.querySelectorAll("div.cell_output > .output"))
   output.hidden = /^\s*…\s*Not attempted/.test(output.textContent);
-}
+
+// On a narrow screen the contents of the page lie over it: close them when the reader follows one of their links.
+document.addEventListener("click", ({ target }) => target.closest("dialog a[href^='#']")?.closest("dialog").close());
 
 document.querySelector("button.print-page")?.addEventListener("click", () => print());
 
