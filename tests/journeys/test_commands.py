@@ -56,8 +56,10 @@ def test_a_student_who_asks_for_an_author_s_command_is_told_what_to_install(tmp_
     shutil.copytree(
         SOURCES[0] / "coursework", package, ignore=shutil.ignore_patterns("authoring", "grading")
     )
-    output = run(f'cd {tmp_path} && "$PYTHON" -m coursework new first-course')
-    assert "invalid choice: 'new'" in output
+    output = run(
+        f'cd {tmp_path} && "$PYTHON" -m coursework new first-course; "$PYTHON" -m coursework update'
+    )
+    assert "invalid choice: 'new'" in output and "\nusage: coursework update [-h]" in output
     assert "install coursework-tools\nas well as coursework-checks" in output
 
 

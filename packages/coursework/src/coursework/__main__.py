@@ -46,9 +46,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
         epilog="Run coursework COMMAND --help for the options of a command.",
     )
     parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    # Students' usage contains a sentence, which does not belong in the usage of each command.
+    commands = parser.add_subparsers(
+        prog="coursework", dest="command", required=True, metavar="COMMAND"
+    )
     update = commands.add_parser(
-        "update", help="update your exercises from a newer archive, and keep all your work"
+        "update",
+        help="update your exercises from a newer archive, and keep all your work",
+        description="Update your exercises from a newer archive, and keep all your work.",
     )
     update.add_argument(
         "archive", metavar="ARCHIVE", help="the newer archive, such as exercises.zip"
@@ -58,7 +63,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     for room in rooms:
         for command, (does, arguments_of_command) in room.ARGUMENTS.items():
-            parser_of_command = commands.add_parser(command, help=does)
+            parser_of_command = commands.add_parser(
+                command, help=does, description=f"{does[0].upper()}{does[1:]}."
+            )
             for names, about in arguments_of_command:
                 parser_of_command.add_argument(*names, **about)
     options = vars(parser.parse_args(arguments))

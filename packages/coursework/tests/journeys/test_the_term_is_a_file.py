@@ -364,7 +364,7 @@ def test_who_has_no_mark_is_told_why(course):
     course.grade()
     said = course.run("why", "ben", "hw1")
     assert "ben, hw1: nothing that can be graded was handed in." in said
-    assert "cannot be graded: submitted/ben/hw1/hw1.ipynb, since Not a notebook" in said
+    assert "cannot be graded: submitted/ben/hw1/hw1.ipynb: Not a notebook" in said
     assert "no mark is exported" in said
     assert "due 2025-10-05 23:59 CEST; it is exported as 0" in course.run("why", "cem", "hw1")
     assert "CEST; excused" in course.run("why", "dan", "hw1")

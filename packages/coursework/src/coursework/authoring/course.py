@@ -74,8 +74,8 @@ def find_course(start: str | Path = ".") -> Course:
     course = course_around(start)
     if course is None:
         raise AuthorError(
-            f"There is no {FILE} in {Path(start).resolve()}, or in any folder above it. Create a "
-            "course with `coursework new COURSE`."
+            f"There is no {FILE} in {Path(start).resolve()}, or in any folder above it. Run "
+            "this in the folder of your course, or create a course with `coursework new COURSE`."
         )
     return course
 

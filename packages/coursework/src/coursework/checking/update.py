@@ -106,7 +106,14 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
     if digest not in archives:
         archives.append(digest)
     to_install = [str(folder / name) for name in older if not _is_installed(name)]
-    report = []
+    report = (
+        []
+        if any(older.values()) or any((folder / name).exists() for name in files)
+        else [
+            f"There were no exercises in {folder.resolve()}. If your work is in another folder, "
+            "run this command there."
+        ]
+    )
     for name, data in files.items():
         place = folder / name
         if place.exists() and place.read_bytes() == data:

@@ -22,7 +22,9 @@ def _moment(text: str) -> datetime.datetime:
     return datetime.datetime.fromisoformat(text).astimezone()
 
 
-OUT = argument("out", metavar="MARKS", help="the folder that `coursework grade --out` created")
+OUT = argument(
+    "out", metavar="MARKS", help="the folder of marks, as in `coursework grade --out MARKS`"
+)
 SOLUTIONS = argument(
     "--solutions",
     help="folder of the notebooks with solutions (default: the one in course.toml)",

@@ -449,18 +449,24 @@ def new_term(folder: str | Path, sources: Path, roster: str | None) -> str:
     place, course = os.path.relpath(roster, folder) if roster else "", course_around(sources)
     _, _, zone = os.path.realpath("/etc/localtime").partition("zoneinfo/")
     text = NEW.format(
-        name=json.dumps(course.title if course else Path(folder).resolve().parent.name),
+        name=json.dumps(
+            course.title if course else Path(folder).resolve().parent.name, ensure_ascii=False
+        ),
         zone=json.dumps(zone or "UTC"),
-        roster=f"roster = {json.dumps(place)}" if roster else '# roster = "gradebook.csv"',
+        roster=f"roster = {json.dumps(place, ensure_ascii=False)}"
+        if roster
+        else '# roster = "gradebook.csv"',
         assignments="".join(
             NEW_ASSIGNMENT.format(
-                name=name if re.fullmatch(r"[\w-]+", name, re.A) else json.dumps(name),
+                name=name
+                if re.fullmatch(r"[\w-]+", name, re.A)
+                else json.dumps(name, ensure_ascii=False),
                 plain=name,
                 title=name.replace("-", " ").capitalize(),
             )
             for name in names
         ),
-        names=", ".join(map(json.dumps, names)),
+        names=json.dumps(names, ensure_ascii=False)[1:-1],
         first=names[0],
     )
     if roster:

@@ -62,10 +62,14 @@ def write_course(store: Store, term: Term, *, now: datetime.datetime | None = No
         statistics.add(record)
         worth[record.assignment] = record.worth
         students.update(term.members(record.student))
-    if term.roster:
-        students.update(term.roster.people)
+    people = term.roster.people if term.roster else students
+    lines = _misspelt(term, worth) + [
+        f"{student} has marks but is not in the roster. The table and the statistics still "
+        "include this student."
+        for student in sorted(students.difference(people))
+    ]
+    students.update(people)
     term.demand_people(store.folder / FILE, students)
-    lines = _misspelt(term, worth)
     folder, rows, all_results = store.folder / FOLDER, [], list[Result]()
     refused = {one.student for one in refused_of(store)}
     damaged: dict[str, list[str]] = {}

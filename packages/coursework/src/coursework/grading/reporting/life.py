@@ -40,9 +40,7 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
     comes_to = _of(given) if given else "nothing that can be graded was handed in"
     lines = [f"{named}, {assignment}: {comes_to}."]
     refused = [file for file in refused_of(store) if file.student in (student, whose)]
-    lines += [
-        f"  cannot be graded: {in_a_line(file.file, 120)}, since {file.why}" for file in refused
-    ]
+    lines += [f"  cannot be graded: {in_a_line(file.file, 120)}: {file.why}" for file in refused]
     cases = record.cases if record else {}
     for notebook in record.notebooks if record else ():
         when = f", handed in {notebook.handed_in}" if notebook.handed_in else ""
