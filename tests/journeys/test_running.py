@@ -31,21 +31,6 @@ def status_text(page, words):
     return text
 
 
-def test_what_is_written_awaits_and_what_is_not_there_is_named(page, site):
-    page.goto(site + CHAPTER)
-    cell = page.locator("div.cell:has(button.run-cell:visible)").first
-    for code, result in [
-        ("import asyncio\nprint(await asyncio.sleep(0, 'waited'))\nawait asyncio.sleep(0, 7)", "7"),
-        ("import scipy", "scipy is not part of this page's Python"),
-        ("from scipi.spatial import Rotation", "scipi is not part of this page's Python"),
-    ]:
-        cell.locator(".cell_input").click()
-        page.keyboard.press("Control+a")
-        page.keyboard.type(code)
-        page.keyboard.press("Control+Enter")
-        expect(cell.locator(".cell_output")).to_contain_text(result, timeout=PATIENCE)
-
-
 def test_a_book_kept_without_python_says_so_offline(page, site):
     page.goto(site + CHAPTER)
     page.locator("details.take-away summary").click()

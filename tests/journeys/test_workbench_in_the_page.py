@@ -38,8 +38,11 @@ def click(page, button):
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
 
 
-def test_a_click_answers_the_question_of_a_shared_order(page):
+def test_a_mistake_is_told_and_a_click_answers_the_question_of_a_shared_order(page):
+    paste(page, "0.1 0.3", FRD)
+    answer(page).get_by_text("Not readable yet").wait_for()
     paste(page, FLU, FRD)
+    answer(page).get_by_text("None of these?").wait_for()
     answer(page).get_by_text("One question decides.").wait_for()
     assert "scalar part of the quaternions come first or last?" in answer(page).inner_text()
     last = answer(page).get_by_role("listitem").filter(has_text="comes last in both")
@@ -71,13 +74,7 @@ def test_keys_answer_the_question_of_a_shared_layout(page):
     assert "of the body reversed" in answer(page).inner_text().lower()
 
 
-def test_a_mistake_is_told_and_mended(page):
-    paste(page, "0.1 0.3", FRD)
-    answer(page).get_by_text("Not readable yet").wait_for()
-    paste(page, FLU, FRD)
-    answer(page).get_by_text("None of these?").wait_for()
-
-
+@pytest.mark.parametrize("page", ["desk"], indirect=True)
 def test_a_dropped_file_goes_into_the_field_or_to_the_bench(page, tmp_path):
     """Nowhere on the page, once the bench is near, does it open in place of the page."""
     file = tmp_path / "poses.txt"

@@ -592,6 +592,12 @@ def test_edit_and_run(shared):
     ]
     assert "made anew" in shared.try_code(3, "a = 'made anew'\na")
     assert "made anew" in shared.try_code(4, "a")
+    waited = shared.try_code(
+        3, "import asyncio\nprint(await asyncio.sleep(0, 'waited'))\nawait asyncio.sleep(0, 7)"
+    )
+    assert set(waited.split()) == {"waited", "7"}
+    for code, name in (("import scipy", "scipy"), ("from scipi.spatial import Rotation", "scipi")):
+        assert f"{name} is not part of this page's Python" in shared.try_code(3, code)
 
 
 # What a reader may write that fails, and what the page says of it.
