@@ -238,7 +238,7 @@ def test_docstrings_name_equations_by_the_numbers_of_the_book():
         name: [labels[int(k) - 1][int(n) - 1] for k, n in re.findall(r"\((\d+)\.(\d+)\)", note)]
         for name, note in notes.items()
         if note
-    }
+    }, "EQUATIONS in this file lists the labels of the equations that each docstring names"
 
 
 def test_the_page_quotes_the_reply_to_the_numbers_as_they_stand(tmp_path, monkeypatch):
