@@ -96,7 +96,11 @@ def main():
     # These imports load Sphinx, so import them only if there is something to build.
     from . import install, lite, whole_book
 
-    print("Building the book ...", flush=True)
+    print(
+        "Building the book: minutes for all of it, a minute or two if little has changed. "
+        "Nothing more is printed until the pages are done ...",
+        flush=True,
+    )
     # Byte-compile the wheels for browsers while the pages are being read.
     compiling = [sys.executable, "-c", "from notebook_pages import lite; lite.compile_ahead()"]
     ahead = None if lite.is_compiled() else subprocess.Popen(compiling)
