@@ -1,7 +1,9 @@
 """The command ``coursework``, for authors and instructors, and for students' updates."""
 
 import argparse
+import atexit
 import os
+import signal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -79,18 +81,19 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except BrokenPipeError:
         raise
     except KeyboardInterrupt:
+        # Pressing Ctrl+C again must not interrupt the end of the processes that grade.
+        atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
         # Only grading keeps what it has done.
         sys.exit("\nStopped." + " Run the same command again to resume." * (command == "grade"))
     except ModuleNotFoundError as error:
-        needs = (
-            "Linux, because it runs students' code in isolation. Run it in WSL or in a "
-            "container. You can still run review, merge, term and export here, and your "
-            "decisions are in the journal."
+        sys.exit(
+            f"coursework {command} needs Linux, because it runs students' code in isolation. Run "
+            "it in WSL or in a container. You can still run review, merge, term and export here, "
+            "and your decisions are in the journal."
             if error.name in ("fcntl", "resource")
-            else f"{error.name}, which is not installed here. Install coursework-tools, or in a "
-            "working copy: python -m pip install --editable '.[tools]'"
+            else f"coursework {command} needs {error.name}, which is not installed here. Install "
+            "coursework-tools, or in a working copy: python -m pip install --editable '.[tools]'"
         )
-        sys.exit(f"coursework {command} needs {needs}")
     except ValueError as error:
         # A fault of ours in an author's command shows its traceback.
         if type(error) is ValueError and not runs[command].__module__.endswith("grading.commands"):
@@ -98,8 +101,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.exit(f"coursework {command}: {error}")
     # The reason is enough; a traceback helps nobody here.
     except OSError as error:
-        where = f": {error.filename}" if error.filename else ""
-        sys.exit(f"coursework {command}: {error.strerror or error}{where}")
+        sys.exit(
+            f"coursework {command}: {error.strerror or error}"
+            + (f": {error.filename}" if error.filename else "")
+        )
 
 
 def _update(archive: str, folder: str) -> None:

@@ -71,8 +71,7 @@ def find_course(start: str | Path = ".") -> Course:
     AuthorError
         There is none, or it is invalid.
     """
-    course = course_around(start)
-    if course is None:
+    if (course := course_around(start)) is None:
         raise AuthorError(
             f"There is no {FILE} in {Path(start).resolve()}, or in any folder above it. Run "
             "this in the folder of your course, or create a course with `coursework new COURSE`."
