@@ -1,4 +1,4 @@
-"""A check judges the present content of the notebook, in a kernel and on a page."""
+"""A check judges the present content of the notebook, in a kernel."""
 
 import shutil
 from contextlib import suppress
@@ -105,60 +105,3 @@ def test_an_orientation_is_shown_as_a_triad(kernel):
     )
     # An answer that is no orientation has no picture.
     assert "<svg" not in kernel("check('simple-orientations/crank', 2*matrix)")
-
-
-PAGE = "exercises/simple-orientations.html"
-IDLE = "() => !document.querySelector('.cell.running, .cell.waiting, html.live-busy')"
-
-
-@pytest.fixture
-def reader(browser, site):
-    """Return a page of exercises, which a student edits and runs only with the keyboard."""
-    context = browser.new_context(viewport={"width": 1300, "height": 900})
-    page = context.new_page()
-    page.goto(site + PAGE)
-    check = page.locator("div.cell", has_text=CHECK)
-    answer = page.locator("div.cell", has_text="B_C_N = ...")
-    answer.locator(".cm-content").wait_for()
-    answer = answer.element_handle()
-
-    def write(code):
-        answer.query_selector(".cm-content").click()
-        page.keyboard.press("Control+a")
-        # The editor indents by itself, so write everything in one line.
-        page.keyboard.type(code)
-
-    def run():
-        check.locator("button.run-cell").click()
-        page.wait_for_timeout(300)
-        page.wait_for_function(IDLE)
-        return check.inner_text()
-
-    yield write, run, check
-    context.close()
-
-
-def test_a_page_calls_nothing_right_that_no_longer_stands_there(reader):
-    write, run, check = reader
-    right = " ".join(RIGHT.split())
-    write("other = 1")
-    reply = run()
-    # The book has no result of a question that nobody has answered, so none is announced.
-    assert "No cell that you have run sets `B_C_N`." in reply and "The book’s result" not in reply
-    write(right)
-    reply = run()
-    assert "Correct" in reply and "earlier answer" not in reply
-    write(right.replace("beta", "betta"))
-    assert "reply to an earlier answer" in check.inner_text()
-    assert "reply to an earlier answer" in run()  # the answer's cell fails, and no check runs
-    reply = run()
-    assert "Correct" not in reply and "The cell that sets B_C_N stopped" in reply
-    for slip in (right.replace("B_C_N", "B_C_n"), f"# {right}"):
-        write(right)
-        assert "Correct" in run()
-        write(slip)
-        reply = run()
-        assert "Correct" not in reply and "The cell that set B_C_N no longer sets it" in reply
-    write(right)
-    reply = run()
-    assert "Correct" in reply and "earlier answer" not in reply

@@ -670,12 +670,22 @@ def solution(name):
 
 
 def test_exercise_is_checked_in_the_page(context, site):
+    """Nothing is called right that is wrong, or that no longer stands there."""
     name = "exercises/simple-orientations.html"
     page = Page(context, site, name)
     places = {cell["name"]: number for number, cell in enumerate(kinds(name), start=1)}
     blank, check = places["simple-orientations-crank"], places["check-simple-orientations-crank"]
-    page.page.click(f"button.run-cell >> nth={check - 1}")
-    page.wait()
+
+    def run():
+        page.page.click(f"button.run-cell >> nth={check - 1}")  # an edited cell above runs first
+        page.wait()
+        return page.cell(check).inner_text()
+
+    def reply_to(code):
+        page.write(blank, code)
+        return run()
+
+    run()
     outcome = page.cell(check).locator("[data-outcome]")
     assert outcome.get_attribute("data-outcome") == "not attempted"
     right = solution("simple-orientations/crank")
@@ -689,16 +699,38 @@ def test_exercise_is_checked_in_the_page(context, site):
         (f"{right}\nA_C_N = A_C_N.T", "wrong"),
         (right, "correct"),
     ):
-        page.write(blank, code)
-        page.page.click(f"button.run-cell >> nth={check - 1}")  # the edited cell above runs first
-        page.wait()
-        assert outcome.get_attribute("data-outcome") == expected, page.below(check)
+        reply = reply_to(code)
+        assert outcome.get_attribute("data-outcome") == expected, reply
         if code == with_module:
-            assert "but not the right one" in page.below(check)
+            assert "but not the right one" in reply
         elif expected == "wrong":
-            assert "transpose" in page.below(check) and "$" not in page.below(check)
+            assert "transpose" in reply and "$" not in page.below(check)
             assert page.cell(check).locator("[data-outcome] .katex").count() > 0
             assert "transpose" in page.words()
+    blank, check = places["simple-orientations-boom"], places["check-simple-orientations-boom"]
+    right = (
+        "B_C_N = sm.Matrix([[sm.cos(beta), 0, sm.sin(beta)], [0, 1, 0], "
+        "[-sm.sin(beta), 0, sm.cos(beta)]])"
+    )
+    reply = reply_to("other = 1")
+    # The book has no result of a question that nobody has answered, so none is announced.
+    assert "No cell that you have run sets `B_C_N`." in reply and "The book’s result" not in reply
+    for slip, said in (
+        (right.replace("beta", "betta"), "The cell that sets B_C_N stopped"),
+        (right.replace("B_C_N", "B_C_n"), "The cell that set B_C_N no longer sets it"),
+        (f"# {right}", "The cell that set B_C_N no longer sets it"),
+    ):
+        reply = reply_to(right)
+        assert "Correct" in reply and "earlier answer" not in reply
+        page.write(blank, slip)
+        assert "reply to an earlier answer" in page.below(check)
+        reply = run()
+        if "betta" in slip:
+            assert "reply to an earlier answer" in reply  # the cell fails, and no check runs
+            reply = run()
+        assert "Correct" not in reply and said in reply
+    reply = reply_to(right)
+    assert "Correct" in reply and "earlier answer" not in reply
     assert page.outside() == [] and page.errors == []
 
 
