@@ -132,7 +132,7 @@ def check_dcm(dcm: Values) -> None:
 
     Notes
     -----
-    In the book: equation (3.7).
+    In the book: equation (3.6).
     """
     if is_symbolic(dcm):
         entries = symbol_components(dcm, (3, 3), "dcm")
