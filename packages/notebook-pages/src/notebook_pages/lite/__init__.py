@@ -252,6 +252,11 @@ def bring_answers_first(target):
         "seconds')))]).then((first) => first.prepare())"
         ".catch((error) => console.warn(`The answers from the page have not reached this notebook "
         "yet: ${error.message}`));\n"
+        # When a notebook is renamed, the interface shows an address of Jupyter's server, which
+        # does not exist here. Show one that can be opened again.
+        "        const push = history.pushState.bind(history);\n"
+        "        history.pushState = (state, title, address) => push(state, title, "
+        f"address?.replace(/\\/{APPS[0]}\\/(?!index)/, '/{APPS[0]}/index.html?path='));\n"
         "        "
     )
     after, count = start.subn(lambda match: wait + match[0], before)
