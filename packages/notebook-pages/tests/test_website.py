@@ -247,8 +247,10 @@ def faulty_book(tmp_path_factory, take_compiled_wheels):
     """One book with a chapter for each fault: the exit code, and
     the warnings, each with its lines.
     """
-    names = {file_name(fault): cells for fault, (cells, _) in FAULTS.items()}
-    chapters = {name: own_labels(cells, name) for name, cells in names.items()}
+    chapters = {
+        file_name(fault): own_labels(cells, file_name(fault))
+        for fault, (cells, _) in FAULTS.items()
+    }
     folder = tmp_path_factory.mktemp("faulty")
     take_compiled_wheels(folder)
     code, words = build(folder, chapters | {"good": own_labels(chapter(), "good")})
@@ -401,14 +403,21 @@ def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch):
 def test_a_build_with_nothing_to_do_starts_nothing(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(unchanged, "REPOSITORY", tmp_path)
+    monkeypatch.setattr(book, "what_prevents_building", lambda: None)
     (tmp_path / "_build").mkdir()
     unchanged.note(unchanged.of_sources())
     monkeypatch.setattr(book, "subprocess", None)  # whatever it would start fails
     book.main()
     assert "Nothing has changed" in capsys.readouterr().out
     # Nor does it load what only a build needs: that takes longer than to look.
-    code = "import sys, notebook_pages.build; sys.exit('sphinx' in sys.modules)"
-    subprocess.run([sys.executable, "-c", code], check=True)
+    subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "import sys, notebook_pages.build; sys.exit('sphinx' in sys.modules)",
+        ],
+        check=True,
+    )
 
 
 @pytest.mark.parametrize("end", [SystemExit(1), RuntimeError("There was an error in building")])
@@ -418,6 +427,7 @@ def test_of_a_faulty_build_nothing_is_left(tmp_path, monkeypatch, end):
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(unchanged, "REPOSITORY", tmp_path)
+    monkeypatch.setattr(book, "what_prevents_building", lambda: None)
     monkeypatch.setattr("notebook_pages.lite.is_compiled", lambda: True)
     monkeypatch.setitem(sys.modules, "jupyter_book.cli.main", SimpleNamespace(main=build))
     (tmp_path / "_build" / "html").mkdir(parents=True)
