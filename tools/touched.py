@@ -31,8 +31,9 @@ def main(base):
     new = ["git", "ls-files", "--others", "--exclude-standard"]
     paths = [subprocess.check_output(command, text=True).splitlines() for command in (changed, new)]
     tests = {"tests/test_style.py": None, "tests/test_budget.py": None}
+    by_folder = tests_by_folder()
     for path in sum(paths, []):
-        tests |= dict.fromkeys(tests_of(path, tests_by_folder()))
+        tests |= dict.fromkeys(tests_of(path, by_folder))
     print(*tests)
 
 

@@ -87,12 +87,12 @@ def make_pages():
 
 def main():
     start = time.monotonic()
-    if reason := what_prevents_building():
-        sys.exit(f"The book cannot be built: {reason}")
     made_from = unchanged.of_sources()
     if unchanged.is_unchanged(made_from):
         print(f"Nothing has changed since the last build: {HTML / 'index.html'}")
         return
+    if reason := what_prevents_building():
+        sys.exit(f"The book cannot be built: {reason}")
     # These imports load Sphinx, so import them only if there is something to build.
     from . import install, lite, whole_book
 
