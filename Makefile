@@ -105,6 +105,7 @@ check: $(VENV)/ready-test setup
 
 BASE ?= main
 quick: $(VENV)/ready-test book
+	@git rev-parse --quiet --verify "$(BASE)^{commit}" >/dev/null || { echo "There is no commit $(BASE) here. Name another: make quick BASE=HEAD~1"; exit 1; }
 	@tests=$$($(RUN) -m tools.touched $(BASE)) && echo "Tests: $$tests" && $(RUN) -m pytest -n auto -m "not long" $$tests
 
 # Tests that are slow and rarely fail are left to `make test-rest`. `.ci/run` runs both.
