@@ -177,6 +177,7 @@ def test_what_came_in_time_counts_before_what_came_late(tmp_path):
     assert (
         "It was late: due 2025-10-05 23:59 UTC"
         in (course.marks / "feedback" / "ada" / "hw1.html").read_text()
+        and '"ada","hw1","4","8","0","late"' in (course.marks / "grades.csv").read_text()
     )
 
 

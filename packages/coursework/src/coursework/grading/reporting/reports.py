@@ -164,7 +164,7 @@ def write_all(store: Store) -> None:
         ).add(record)
         names.update(dict.fromkeys(record.marks))
     refused = refused_of(store)
-    write(store.folder / "grades.csv", grades(store.all(), list(names)))
+    write(store.folder / "grades.csv", grades(store.all(), list(names), term))
     write(store.folder / "undecided.csv", lines(UNDECIDED, _undecided_of(store.all())))
     write(store.folder / "refused.csv", table(("file", "student", "why"), map(astuple, refused)))
     write(
@@ -215,16 +215,16 @@ def _write_if_new(path: Path, content: str) -> None:
         write(path, content, lasting=False)
 
 
-def grades(records: Iterable[Record], names: Sequence[str]) -> Iterator[str]:
+def grades(records: Iterable[Record], names: Sequence[str], term: Term) -> Iterator[str]:
     """Return all marks as lines of CSV, one for each student and assignment."""
     header = ["student", "assignment", "points", "worth", "undecided", "late", *names]
     return lines(
         [*header, *(f"{name}: outcome" for name in names)],
-        (_grades_of(record, names) for record in records),
+        (_grades_of(record, names, term) for record in records),
     )
 
 
-def _grades_of(record: Record, names: Sequence[str]) -> list[object]:
+def _grades_of(record: Record, names: Sequence[str], term: Term) -> list[object]:
     marks = [record.marks.get(name) for name in names]
     return [
         record.student,
@@ -232,7 +232,11 @@ def _grades_of(record: Record, names: Sequence[str]) -> list[object]:
         record.points,
         record.worth,
         record.undecided,
-        "late" if record.late else "",
+        "late"
+        if result_of(
+            record.student, record.assignment, record, term, {}, datetime.datetime.now(datetime.UTC)
+        ).late
+        else "",
         *(mark.points if mark else "" for mark in marks),
         *(mark.outcome if mark else "" for mark in marks),
     ]
