@@ -39,9 +39,9 @@ def angular_velocity_matrix(angles: Values, sequence: AxisSequence) -> Array | M
     \end{bmatrix}^T
     $$
 
-    Its columns are the axes of the three rotations, written along the frame $D$ that results. At
-    gimbal lock the first and the last column are parallel, the determinant is zero, and no rates
-    give an angular velocity in one of the directions.
+    Its columns are the axes of the three rotations, with components along the frame $D$ that
+    results. At gimbal lock the first and the last column are parallel, the determinant is zero, and
+    no rates give an angular velocity in one of the directions.
 
     Parameters
     ----------

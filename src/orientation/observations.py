@@ -1,7 +1,8 @@
 """Orientation from observed directions: two vectors, or many with weights.
 
-A direction that is known in a frame $N$ (up, north, a star) is measured along a body $B$. Two
-directions that are not parallel determine ${}^B\\mathbf{C}^N$; more than two are fitted.
+The components of a direction along a frame $N$ are known (up, north, a star); those along a body
+$B$ are measured. Two directions that are not parallel determine ${}^B\\mathbf{C}^N$; to more than
+two, the orientation is fitted.
 """
 
 from __future__ import annotations
