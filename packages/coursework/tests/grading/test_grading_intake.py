@@ -427,6 +427,7 @@ def test_a_roster_that_cannot_be_used_is_said(tmp_path):
     for text, why in (
         ("student\na\na\n", "line 3: 'a' is listed twice"),
         ("x,y\n1,2\n", "lists no students"),
+        ("PK\x03\x04...", "such as .xlsx or .ods. Open it in the spreadsheet, save it as CSV"),
         ('student,name\n1,"Ann\n2,Bob\n', "line 2: we cannot read this line"),
     ):
         (tmp_path / "roster.csv").write_text(text)

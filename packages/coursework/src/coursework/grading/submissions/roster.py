@@ -210,11 +210,12 @@ def cells_in(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     data = path.read_bytes()
     encoding, mark = encoding_of(data)
     text = data[len(mark) :].decode(encoding)
-    first = text.split("\n", 1)[0]
     # Split lines only where CSV does. Students choose their names, and with a rarer line separator
     # in them they could begin a line of their own.
     reader = csv.reader(
-        io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count), strict=True
+        io.StringIO(text, newline=""),
+        delimiter=max(",;\t", key=text.split("\n", 1)[0].count),
+        strict=True,
     )
     rows: list[tuple[int, list[str]]] = []
     try:
@@ -226,8 +227,7 @@ def cells_in(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
             f"{path}, line {line}: we cannot read this line ({error}). Perhaps a quotation mark "
             "opens a cell there and nothing closes it."
         ) from None
-    header = rows.pop(0)[1] if rows else []
-    return [name.casefold() for name in header], rows
+    return [name.casefold() for name in (rows.pop(0)[1] if rows else [])], rows
 
 
 def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
@@ -246,6 +246,11 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
 
 def encoding_of(data: bytes) -> tuple[str, bytes]:
     """Return the encoding of a table from a spreadsheet or a system, and its byte order mark."""
+    if data.startswith(b"PK\x03\x04"):
+        raise BadRoster(
+            "This table is a spreadsheet's own file, such as .xlsx or .ods. Open it in the "
+            "spreadsheet, save it as CSV, and use that file."
+        )
     for mark, encoding in (
         (b"\xef\xbb\xbf", "utf-8"),
         (b"\xff\xfe", "utf-16-le"),
