@@ -58,12 +58,11 @@ def test_a_new_course_is_whole(statics):
         "exercises/sealed/first-steps.json",
     } <= names
     with zipfile.ZipFile(course.archive) as box:
-        inside = set(box.namelist())
-    assert {
-        "exercises/first-steps.ipynb",
-        "exercises/sealed/first-steps.json",
-        "exercises/README.txt",
-    } < inside
+        assert {"exercises/first-steps.ipynb", "exercises/sealed/first-steps.json"} < {
+            *box.namelist()
+        }
+        # A student who starts the kernel anew and runs only a check sees this from Python.
+        assert b"name 'check' is not defined" in box.read("exercises/README.txt")
 
 
 def test_nothing_is_written_over_by_a_new_course(statics):

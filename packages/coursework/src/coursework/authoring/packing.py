@@ -82,6 +82,10 @@ Replace the dots with your answer and run the check below each question. It tell
 the answer is right, or what you mixed up. Your progress is kept in the folder .coursework
 beside the notebooks and nowhere else.
 
+Python forgets everything when you open a notebook again or restart its kernel. Then first run
+the cells above, with Run > Run All Above Selected Cell. Otherwise Python says, for example,
+"name 'check' is not defined".
+
 When there is a newer archive, do not unpack it over your work. Run
 
        python -m coursework update exercises.zip
