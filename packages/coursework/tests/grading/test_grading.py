@@ -32,7 +32,7 @@ from grading_class import (
     write_sources,
     write_term,
 )
-from sample_class import make_class
+from sample_class import BROKEN, HOSTILE, make_class
 
 from coursework.__main__ import main
 from coursework.checking.reply import plain_text, to_html
@@ -1233,11 +1233,11 @@ def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
     store, compared = Store(tmp_path / "out"), 0
     for student, about in expected.items():
         found = store.read(student, "homework")
-        refused = any(did.startswith("refused") for did in about["did"])
+        refused = about["did"] in BROKEN
         assert (found is None) == refused, about["did"]
         for name, (outcome, note) in ({} if refused else about["questions"]).items():
             mark = found.marks[name]
-            if any(did.startswith("hostile") for did in about["did"]):
+            if about["did"] in HOSTILE:
                 # It may have spoilt its own answers, but gained nothing.
                 assert not mark.points or outcome != "not attempted"
             else:
