@@ -33,6 +33,13 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def ends_with(parent: int) -> bool:
+    """Have the system end this process with its parent; return False if that has ended already."""
+    if sys.platform.startswith("linux"):
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    return os.getppid() == parent
+
+
 class TaskLost(RuntimeError):
     """An error because several worker processes in a row died on the same task."""
 
@@ -160,10 +167,7 @@ def _work(
     prepare: Callable[[contextlib.ExitStack], Callable[[Task], Done]],
     asking: int,
 ) -> None:
-    if sys.platform.startswith("linux"):
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != asking:
-        # The parent ended before this process could ask to end with it.
+    if not ends_with(asking):
         return
     # Ctrl+C is for the parent. A handler, unlike SIG_IGN, is not inherited by programs started
     # here.

@@ -5,24 +5,22 @@ the cases that nobody thought of. If the process ends while judging an answer, w
 as undecided, and a new process continues with the next.
 """
 
-import ctypes
 import json
 import math
 import os
 import resource
-import select
 import signal
-import struct
-import sys
-import time
 import traceback
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from multiprocessing import Pipe
+from multiprocessing.connection import Connection
 from types import TracebackType
 from typing import Any, NoReturn, Self
 
 from ..record import Mark, Record
+from ..workers import ends_with
 from . import marking
 from .cases import Contracts
 from .contract import Contract
@@ -33,7 +31,6 @@ MOST_SECONDS = 10
 MOST_MEMORY = 1 << 30
 #: Seconds without a message, on a machine however busy, after which we end the process.
 LONGEST_SILENCE = 60 * MOST_SECONDS
-PR_SET_PDEATHSIG = 1
 
 
 class Judge:
@@ -55,7 +52,7 @@ class Judge:
         log: Callable[[str], None],
     ) -> None:
         self.questions, self.contracts, self.log = questions, contracts, log
-        self.process: tuple[int, int, int] | None = None
+        self.process: tuple[int, Connection] | None = None
         self.of = os.getpid()
 
     def __enter__(self) -> Self:
@@ -79,15 +76,14 @@ class Judge:
         """
         if self.of != os.getpid():
             # A forked copy of this process needs a judge of its own.
-            self.process, self.of = (None, os.getpid())
+            self.process, self.of = None, os.getpid()
         found: dict[str, Mark] = {}
         while True:
-            if self.process is None:
-                self.process = self._begin()
+            _, judge = self.process = self.process or self._begin()
             begun = ""
             try:
-                self._say({"record": record.as_json(), "without": list(found)})
-                while "end" not in (said := self._hear()):
+                _say(judge, {"record": record.as_json(), "without": list(found)})
+                while "end" not in (said := _hear(judge, LONGEST_SILENCE)):
                     if "error" in said:
                         raise ValueError(said["error"])
                     if "fault" in said:
@@ -117,67 +113,47 @@ class Judge:
 
     # -- the process
 
-    def _begin(self) -> tuple[int, int, int]:
-        hears, asks = os.pipe()
-        heard, says = os.pipe()
-        asking = os.getpid()
+    def _begin(self) -> tuple[int, Connection]:
+        (judge, other), asking = Pipe(), os.getpid()
         with warnings.catch_warnings():
             # The copy uses nothing that another thread of this process may hold.
             warnings.simplefilter("ignore", DeprecationWarning)
             number = os.fork()
         if not number:
-            self._judge(hears, says, asking)
-        os.close(hears)
-        os.close(says)
-        return number, asks, heard
+            self._judge(other, asking)
+        other.close()
+        return number, judge
 
     def end(self) -> None:
         """End the process, if there is one and this process started it."""
         if self.process is not None and self.of == os.getpid():
-            number, asks, heard = self.process
-            os.close(asks)
-            os.close(heard)
+            number, judge = self.process
+            judge.close()
             os.kill(number, signal.SIGKILL)
             os.waitpid(number, 0)
         self.process = None
 
-    def _say(self, message: dict[str, Any]) -> None:
-        assert self.process is not None
-        _write(self.process[1], message)
-
-    def _hear(self) -> dict[str, Any]:
-        assert self.process is not None
-        return _read(self.process[2], time.monotonic() + LONGEST_SILENCE)
-
-    def _judge(self, hears: int, says: int, asking: int) -> NoReturn:
+    def _judge(self, asks: Connection, asking: int) -> NoReturn:
         """Answer requests until the process is ended; this runs in the judge's process."""
         try:
-            if sys.platform.startswith("linux"):
-                ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-            if os.getppid() == asking:
+            if ends_with(asking):
                 signal.signal(signal.SIGINT, signal.SIG_IGN)
                 signal.signal(signal.SIGTERM, signal.SIG_DFL)
-                first, second = sorted((hears, says))
                 # Close everything inherited, since another process may wait for it to be closed.
-                for low, high in (
-                    (3, first),
-                    (first + 1, second),
-                    (second + 1, os.sysconf("SC_OPEN_MAX")),
-                ):
-                    os.closerange(low, high)
+                os.closerange(3, asks.fileno())
+                os.closerange(asks.fileno() + 1, os.sysconf("SC_OPEN_MAX"))
                 _limit_memory()
                 while True:
-                    asked = _read(hears)
-                    for said in self._marks(
-                        Record.from_json(asked["record"], "a record"), asked["without"]
-                    ):
-                        _write(says, said)
+                    asked = _hear(asks)
+                    record = Record.from_json(asked["record"], "a record")
+                    for said in self._marks(record, asked["without"]):
+                        _say(asks, said)
         except (EOFError, OSError):
             pass
         finally:
             os._exit(0)
 
-    def _marks(self, record: Record, without: list[str]) -> Any:
+    def _marks(self, record: Record, without: list[str]) -> Iterator[dict[str, Any]]:
         try:
             own, _ = marking.of_student(
                 self.questions[record.assignment], record.student, record, self.contracts
@@ -215,29 +191,12 @@ def _limit_time() -> None:
     resource.setrlimit(resource.RLIMIT_CPU, (until, resource.getrlimit(resource.RLIMIT_CPU)[1]))
 
 
-def _write(handle: int, message: dict[str, Any]) -> None:
-    data = json.dumps(message).encode()
-    data = struct.pack(">Q", len(data)) + data
-    while data:
-        data = data[os.write(handle, data) :]
+def _say(other: Connection, message: dict[str, Any]) -> None:
+    other.send_bytes(json.dumps(message).encode())
 
 
-def _read(handle: int, until: float = math.inf) -> dict[str, Any]:
-    (length,) = struct.unpack(">Q", _exactly(handle, 8, until))
-    found: dict[str, Any] = json.loads(_exactly(handle, length, until))
-    return found
-
-
-def _exactly(handle: int, number: int, until: float) -> bytes:
-    found = bytearray()
-    while len(found) < number:
-        if (
-            until < math.inf
-            and not select.select([handle], [], [], max(0.0, until - time.monotonic()))[0]
-        ):
-            raise EOFError
-        piece = os.read(handle, min(number - len(found), 1 << 20))
-        if not piece:
-            raise EOFError
-        found += piece
-    return bytes(found)
+def _hear(other: Connection, seconds: float | None = None) -> dict[str, Any]:
+    if not other.poll(seconds):
+        raise EOFError
+    message: dict[str, Any] = json.loads(other.recv_bytes())
+    return message
