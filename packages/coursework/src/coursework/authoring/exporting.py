@@ -10,10 +10,8 @@ from __future__ import annotations
 import base64
 import hashlib
 import html
-import io
 import re
 import urllib.parse
-import zipfile
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
@@ -23,6 +21,7 @@ from markupsafe import Markup
 from ..checking.mistakes import GENERAL
 from ..checking.reply import mathml, to_html
 from .author import to_page
+from .packing import zipped
 
 #: A picture within a page, as authors' figures are stored.
 EMBEDDED = re.compile(r'(?<=src=")data:image/(svg|png|jpe?g|gif)[^,"]*?(;base64)?,([^"]+)')
@@ -225,9 +224,4 @@ def qti(title: str, questions: Mapping[str, Iterable[Item]]) -> bytes:
         files[item.identifier] = list(pictures)
     add("test.xml", "qti-test.xml", title=title, questions=questions)
     add("imsmanifest.xml", "imsmanifest.xml", files=files)
-    package = io.BytesIO()
-    with zipfile.ZipFile(package, "w") as archive:
-        for place, content in contents.items():
-            # With a fixed time, the same bank gives the same file.
-            archive.writestr(zipfile.ZipInfo(place), content, zipfile.ZIP_DEFLATED)
-    return package.getvalue()
+    return zipped(contents)

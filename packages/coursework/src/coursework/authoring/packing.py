@@ -2,12 +2,13 @@
 
 import base64
 import hashlib
+import io
 import re
 import shutil
 import subprocess
 import tempfile
 import zipfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from importlib import import_module
 from pathlib import Path
@@ -296,10 +297,17 @@ def _digest(content: bytes) -> str:
 
 def write_zip(target: Path, files: Mapping[str, bytes]) -> Path:
     """Write contents by name to a zip file; the same contents give the same bytes."""
-    with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as box:
+    target.write_bytes(zipped(files))
+    return target
+
+
+def zipped(files: Mapping[str, bytes], programs: Collection[str] = ()) -> bytes:
+    """Return a zip file of contents by name, some of which are ``programs`` that can be run."""
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as box:
         for name in sorted(files):
             entry = zipfile.ZipInfo(name, TIME)
             entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = 0o644 << 16
+            entry.external_attr = (0o755 if name in programs else 0o644) << 16
             box.writestr(entry, files[name])
-    return target
+    return packed.getvalue()

@@ -8,15 +8,14 @@ Nothing that a student wrote gets into it.
 import datetime
 import functools
 import getpass
-import io
 import json
 import math
 import re
-import zipfile
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from ...authoring.packing import zipped
 from ...checking.reply import plain_text
 from ...checking.writing import readable
 from ..judging.journal import Exported, Given, Journal, with_decisions
@@ -713,7 +712,7 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> str:
             f"Decisions about {number_of(marks.behind, 'record')} are not in the pages yet. Run "
             f"`coursework regrade {store.folder}`."
         )
-    pages: dict[str, Path] = {}
+    pages: dict[str, bytes] = {}
     for record in marks.records:
         page = (
             store.folder
@@ -729,15 +728,8 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> str:
                 f"Two feedback pages would have the name {name!r}, so one would replace the other. "
                 "Grade again with a roster in term.toml."
             )
-        pages[name] = page
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, page in sorted(pages.items()):
-            # Use a fixed date, so that the same pages give the same bytes.
-            entry = zipfile.ZipInfo(name)
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(entry, page.read_bytes())
-    write(path, packed.getvalue(), private=True)
+        pages[name] = page.read_bytes()
+    write(path, zipped(pages), private=True)
     return f"{number_of(len(pages), 'page')} of feedback: {path}"
 
 

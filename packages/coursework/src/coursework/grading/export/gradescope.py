@@ -9,13 +9,11 @@ The zip file contains the solutions and the secret, so students' code is isolate
 everywhere, or not run at all.
 """
 
-import io
 import json
 import os
 import shutil
 import sys
 import tempfile
-import zipfile
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,6 +21,7 @@ from importlib import metadata
 from pathlib import Path
 
 from ...authoring.course import find_course
+from ...authoring.packing import zipped
 from ..judging.secret import FILE as SECRET
 from ..judging.secret import secret_beside
 from ..judging.term import FILE, term_of
@@ -109,18 +108,8 @@ def write_autograder(
     files["packages/course-1.dist-info/entry_points.txt"] = (
         f"[coursework.plugins]\n{entries}".encode()
     )
-    data = io.BytesIO()
-    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
-        for place, content in sorted(files.items()):
-            # Use a fixed date, so that the same autograder gives the same bytes.
-            entry = zipfile.ZipInfo(place)
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = (
-                0o755 if place in ("setup.sh", "run_autograder") else 0o644
-            ) << 16
-            archive.writestr(entry, content)
     # The file contains the solutions and the secret.
-    write(path, data.getvalue(), private=True)
+    write(path, zipped(files, ("setup.sh", "run_autograder")), private=True)
     return stems
 
 
