@@ -214,7 +214,7 @@ def test_rounded_numbers_are_taken_and_said_to_be():
             {"side": side | {"form": "quaternion"}, "text": "0,97; 0,0; 0,0; 0,26"},
             {
                 "side": side | {"form": "matrix"},
-                "text": "[[0.87, 0.5, 0], [\u22120.5, 0.87, 0], [0, 0, 1]]",
+                "text": "[[0.87, 0.5, 0], [\u2212 0.5, 0.87, - 0.0], [0, 0, 1]]",
             },
             {"side": side | {"form": "body fixed angles"}, "text": "30, 0, 0"},
         ]

@@ -347,6 +347,8 @@ SPELLED = {
     "MATLAB's factor": "ans =\n\n   1.0e+00 *\n\n  {} {} {}\n  {} {} {}\n  {} {} {}\n\n>> ".format(
         *entries()
     ),
+    "a document": "{} {} {}\n{} {} {}\n{} {} {}".format(*entries()).replace("-", "\u2212 "),
+    "a letter": "[{}, {}, {}, {}, {}, {}, {}, {}, {}]".format(*entries()).replace("-", "- "),
     "rows by number": "row 0: {} {} {}\nrow 1: {} {} {}\nrow 2: {} {} {}\ndet = 1.0000".format(
         *entries()
     ),

@@ -88,7 +88,8 @@ SPELLING = {
     # Patterns and replacements, applied in this order; the first four also before reading tables.
     "cleaning": (
         ("[\u00a0\u2000-\u200b\u202f\u3000]", " "),
-        ("[\u2212\u2013\ufe63\uff0d]", "-"),
+        # A document may put a space between a sign and its number.
+        ("\u2212[ \t]*|[\u2013\ufe63\uff0d]", "-"),
         # Column headings of PX4, where the scalar part is the first of four.
         (r"^(timestamp,.*?\b)q\[0\],q\[1\],q\[2\],q\[3\]", "$1q_w,q_x,q_y,q_z"),
         (r"(?<=[a-z])\[(\d)\](?=,|$)", "_$1"),
@@ -131,6 +132,9 @@ SPELLING = {
             r"""|fl_[xy]|camera_angle_[xy]|\w*error)["']?\s*[:=]\s*[-+]?\d[\d.]*(?:e[-+]?\d+)?(?![\w.])""",
             " ",
         ),
+        # Elsewhere than at the beginning of a line, where it is the dash of a list, a hyphen before
+        # a space is a sign.
+        (r"(\d\.?[ \t]+|[\[(,;|&][ \t]*)-[ \t]+(?=[.\d])", "$1-"),
         # Timestamps, and the dashes of a list.
         (r"(?<![\w.])\d{8,}(?:\.\d+)?(?![\w.])", " "),
         (r"^(\s*)-\s+(?=[-+.]?\d)", "$1"),

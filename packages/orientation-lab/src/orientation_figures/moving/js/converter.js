@@ -14,7 +14,7 @@ const FORMS = { matrix: 9, quaternion: 4, [ANGLES[0]]: 3, [ANGLES[1]]: 3, 'axis 
 // Numbers copied with two or three digits are corrected, and we tell the reader; a larger error is another mistake.
 const ROUNDED = 0.02, EXACT = 1e-6;
 const NUMBER = /[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?/gi;
-const MINUS = /[\u2212\u2013]/g;
+const MINUS = /\u2212\s*|\u2013/g, APART = /(\d\.?[ \t]+|[[(,;|&][ \t]*)-[ \t]+(?=[.\d])/g;   // a sign apart from its number
 
 // ---- the meaning of a side ------------------------------------------------------------------------------
 
@@ -33,7 +33,7 @@ export const sequencesOf = (side, programs) => programs[side.program]?.sequences
 
 // Return the orientation that the numbers in a text describe, and what was corrected; throw if they describe none.
 export function read(side, text) {
-  const numbers = (decimalPoints(text).replace(MINUS, '-').match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
+  const numbers = (decimalPoints(text).replace(MINUS, '-').replace(APART, '$1-').match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
   const commas = numbers.length > wanted && /\d,\d/.test(text) ? ' Write 0.5 for one half: a comma separates two numbers.' : '';
   if (numbers.length !== wanted) throw new Error(`There ${numbers.length === 1 ? 'is' : 'are'} ${several(numbers.length, 'number')} here, but ${side.form} needs ${wanted}.${commas}`);
   let dcm = null, said = '';
