@@ -392,7 +392,7 @@ def matlab_mobile():
         ),
     ]
     rows = [
-        f"2024-03-01 12:{int(t) // 60:02}:{t % 60:06.3f};"
+        f"01.03.2024 12:{int(t) // 60:02}:{t % 60:06.3f};"
         + ";".join(f"{one:.6f}".replace(".", ",") for one in row)
         for t, row in zip(time, np.column_stack([gyr, acc, mag]), strict=True)
     ]

@@ -323,7 +323,7 @@ def spoilt(kind, change):
             "too few",
         ),
         (spoilt("time", lambda values: values[::-1]), "runs backwards"),
-        (spoilt("time", lambda values: 0 * values), "no time column"),
+        (spoilt("time", lambda values: 0 * values), "was it rounded?"),
         (spoilt("gyroscope", lambda values: np.tile(values[:1], (len(values), 1))), "never change"),
         (spoilt("accelerometer", lambda values: 0 * values), "never change"),
         (spoilt("gyroscope", lambda values: 1e12 * values), "rotates that fast"),

@@ -293,11 +293,14 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
             counts = bool(re.search(COUNTS, column.lower()))
             candidates.append((float(precise + 0.5 * even - counts - 0.01 * k), k))
     if not candidates:
-        back = (np.diff(table.values, axis=0) < 0).sum(axis=0)
-        words = "there is no time column" + "".join(
-            f": {column} runs backwards {number_of(times, 'time')}"
-            for column, times in zip(table.columns, back, strict=True)
-            if re.search(TIME, column.lower()) and times
+        steps = np.diff(table.values, axis=0).T
+        words = "no column gives each row's time" + "".join(
+            f" ({column} runs backwards {number_of((of_one < 0).sum(), 'time')})"
+            if (of_one < 0).any()
+            else f" ({column} repeats the row before {number_of((of_one == 0).sum(), 'time')}; "
+            "was it rounded?)"
+            for column, of_one in zip(table.columns, steps, strict=True)
+            if re.search(TIME, column.lower()) and (of_one <= 0).any()
         )
         return None, np.arange(len(table.values), dtype=float), words, True
     k = max(candidates)[1]

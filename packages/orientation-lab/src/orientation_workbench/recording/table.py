@@ -296,9 +296,13 @@ def _number(field: str, comma: bool = False) -> float | None:
         return float("nan")
     if ":" in field:
         try:
-            # Some write a colon before the milliseconds.
+            # Some write a colon before the milliseconds, or the day first and points in the date.
             day = re.sub(
-                r"(:\d\d:\d\d)[:_,](\d+)", r"\1.\2", field.replace("/", "-").replace("Z", "+00:00")
+                r"(:\d\d:\d\d)[:_,](\d+)",
+                r"\1.\2",
+                re.sub(r"^(\d\d)\.(\d\d)\.(\d{4})", r"\3-\2-\1", field)
+                .replace("/", "-")
+                .replace("Z", "+00:00"),
             )
             return datetime.fromisoformat(day).timestamp()
         except ValueError:
