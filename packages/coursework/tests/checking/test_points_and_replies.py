@@ -134,9 +134,9 @@ SAID = (
         ({}, "", ""),
         ({"tries": 1}, ' data-question="levers/&lt;one&gt;" data-tries="1"', ""),
         (
-            {"tries": 2, "tried": ["<", "b"], "help": "hint", "sibling": "a>b"},
-            ' data-question="levers/&lt;one&gt;" data-tries="2" data-tried="&lt; b" '
-            'data-help="hint" data-sibling="a&gt;b"',
+            {"tries": 2, "help": "hint", "sibling": "a>b"},
+            ' data-question="levers/&lt;one&gt;" data-tries="2" data-help="hint" '
+            'data-sibling="a&gt;b"',
             " · 2 answers so far",
         ),
     ],

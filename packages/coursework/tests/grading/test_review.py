@@ -10,7 +10,6 @@ import signal
 import subprocess
 import sys
 import threading
-from dataclasses import replace
 from pathlib import Path
 from urllib.parse import quote
 
@@ -31,8 +30,8 @@ from trial_course import PROJECT
 from coursework.__main__ import main
 from coursework.grading.grade import regrade
 from coursework.grading.judging.journal import Journal
-from coursework.grading.record import Record, Remembered
-from coursework.grading.review import POLICY, Class, application, hints_of
+from coursework.grading.record import Record
+from coursework.grading.review import POLICY, Class, application
 from coursework.grading.store import Store
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
@@ -266,75 +265,9 @@ def test_two_who_judge_at_once_are_told_and_lose_nothing(out):
         assert {one.who for one in Journal(out).standing().decisions.values()} == {"Ann"}
 
 
-def test_hints_are_for_a_person_and_no_marks(out):
-    served = Class(out)
-    said = {
-        student: text
-        for one in served.clusters.values()
-        for student, text in one.hints
-        if one.question == "turns/sum"
-    }
-    hints = [(student, text) for one in served.clusters.values() for student, text in one.hints]
-    assert ("copies", "the same unusual wrong answer as 1 other") in hints
-    assert "right" not in said
-    assert {record.student: record.points for record in served.records}["copies"] == 5
-
-
-def test_equal_code_is_a_hint_only_where_few_have_it(out):
-    records = Class(out).records
-    same = [
-        "x = 1",
-        "sine = sm.sin(alpha)*sm.cos(beta) + sm.cos(alpha)*sm.sin(beta)  # mine\n" * 2,
-        "check('turns/sum', sine)",
-    ]
-
-    def in_cell_2(record):
-        return replace(
-            record,
-            answers={**record.answers, "turns/sum": replace(record.answer("turns/sum"), cell=2)},
-        )
-
-    one, other = map(in_cell_2, records[:2])
-    found = hints_of([one, other, *records[2:]], lambda digest: same)
-    assert any("character by character" in said for said in found[one.student, "turns/sum"])
-    everybody = list(map(in_cell_2, records))
-    assert not any(
-        "character by character" in said
-        for said in sum(hints_of(everybody, lambda digest: same).values(), [])
-    )
-
-
-def test_shared_tries_are_a_hint_if_they_are_several_and_unusual(out):
-    records = Class(out).records
-    one, other, third = (record.student for record in records[:3])
-
-    def said_of(*tried):
-        remembering = [
-            replace(record, remembered={"turns/sum": Remembered(len(answers), tuple(answers))})
-            for record, answers in zip(records, tried, strict=False)
-        ]
-        found = hints_of([*remembering, *records[len(tried) :]], lambda digest: [])
-        return {
-            student: [said for said in found[student, "turns/sum"] if "also tried" in said]
-            for student in (one, other, third)
-        }
-
-    shared = said_of(["aaaaaa", "bbbbbb", "cccccc"], ["bbbbbb", "aaaaaa"], ["dddddd"])
-    assert (
-        shared[one]
-        == shared[other]
-        == ["2 unusual wrong answers that one other student also tried"]
-    )
-    assert shared[third] == []
-    # One may be coincidence.
-    assert not any(said_of(["aaaaaa", "bbbbbb"], ["aaaaaa"], ["eeeeee"]).values())
-    usual = said_of(*[["aaaaaa", "bbbbbb"]] * len(records))
-    assert not any(usual.values())
-
-
 def test_names_are_hidden_on_request(out):
     with Served(out, hide_names=True) as served:
-        _, text = served.ask(f"/{served.secret}/answer/{first_of(served, 'hints')}")
+        _, text = served.ask(f"/{served.secret}/answer/{first_of(served, 'all')}")
         shown = re.sub(r'(value|href)="[^"]*"', "", text)
         assert "student " in shown and not re.search("copies|was-copied|pokes", shown)
 
@@ -460,7 +393,7 @@ def on_a_telephone(out, plotted, browser, scheme="light"):
         assert len(written) == 3
         for place in (
             f"{served.address}?show=all",
-            f"{served.address}answer/{first_of(served, 'hints')}?show=hints",
+            f"{served.address}answer/{first_of(served, 'wrong')}?show=wrong",
             f"{of_plots.address}answer/{first_of(of_plots)}",
             *(path.as_uri() for path in written),
         ):

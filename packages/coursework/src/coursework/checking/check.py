@@ -36,9 +36,6 @@ REVIEW_AFTER = 3
 DAY = 86_400
 # The number of different answers to one question that are remembered.
 MOST_ANSWERS = 100
-# The numbers of wrong answers and of their digits that the notebook shows to the grader, which are
-# enough to see that two answers are the same.
-MOST_TOLD, DIGITS = 20, 6
 # Notes of wrong answers that do not help to find the right one.
 NO_HELP = ("", "rounded too far", OTHER_NUMBERS)
 # The length of the TeX of an answer up to which a reply typesets it.
@@ -98,7 +95,6 @@ def check(name: str, answer: object) -> Reply:
         reply.help = entry.help
         _offer_sibling(reply, sealed.question, reply.help)
     reply.tries = len(entry.answers) + (entry.outcome == "correct")
-    reply.tried = [answer[:DIGITS] for answer in entry.answers[-MOST_TOLD:]]
     if os.environ.get("NBGRADER_EXECUTION") and reply.outcome not in ("correct", "recorded"):
         raise NotCorrect(repr(reply))
     return reply

@@ -70,8 +70,6 @@ class Reply:
         A hash that all ways of writing this answer share.
     tries : int
         The number of different answers in the record beside the notebook; 0 without one.
-    tried : list of str
-        A few digits of each wrong answer in the record, the newest last.
     help : str
         The help that the student had before the right answer, a key of `HELP`; empty without any.
     details : dict
@@ -104,7 +102,6 @@ class Reply:
         self.solution = solution
         self.answer = ""
         self.tries = 0
-        self.tried: list[str] = []
         self.help = ""
         self.sibling = ""
         self.details = details or {}
@@ -126,7 +123,6 @@ class Reply:
         tries = f" · {self.tries} answers so far" if self.tries > 1 else ""
         # The notebook's record of the way to this answer, which the grader reads.
         known = f' data-question="{name}" data-tries="{self.tries}"' if self.tries else ""
-        known += f' data-tried="{html.escape(" ".join(self.tried))}"' if self.tried else ""
         known += f' data-help="{self.help}"' if self.help else ""
         # The book's pages turn it into a button.
         known += f' data-sibling="{html.escape(self.sibling)}"' if self.sibling else ""

@@ -62,15 +62,12 @@ class Remembered(AsJson):
     ----------
     tries : int
         The number of different answers that the student tried.
-    tried : tuple of str
-        A few digits of each wrong answer's digest.
     help : str
         The help that the student had before the right answer, a key of
         `coursework.checking.reply.HELP`; or empty.
     """
 
     tries: int = 0
-    tried: tuple[str, ...] = ()
     help: str = ""
 
 

@@ -47,7 +47,7 @@ from .reporting import pages
 from .reporting.reports import deed
 from .reporting.templates_of_pages import ENVIRONMENT, source_of
 from .store import Store
-from .submissions.intake import SAYS, bare
+from .submissions.intake import SAYS
 from .tables import number
 
 ALONE = "127.0.0.1"
@@ -74,19 +74,12 @@ SHOWN = {
     "decided": "decided by a person",
     "appeals": "with an open appeal",
     "earlier": "decided, and changed since",
-    "hints": "with a hint",
     "all": "all",
 }
 # The most cells above an answer's own that are shown first.
 MOST_ABOVE = 4
-#: Code shared by a smaller fraction of the class is worth a look; everybody writes more common
-#: code.
-FEW = 0.05
-SHORTEST_CODE = 60
 #: We do not hide names shorter than this in what students wrote.
 SHORTEST_NAME = 3
-#: Hints for a person, by student and question.
-Hints = defaultdict[tuple[str, str], list[str]]
 
 
 class Cluster(NamedTuple):
@@ -97,15 +90,12 @@ class Cluster(NamedTuple):
     id : str
     assignment, question : str
     members : list of Record
-    hints : list of (str, str)
-        For each student with a hint: what a person may want to look at.
     """
 
     id: str
     assignment: str
     question: str
     members: list[Record]
-    hints: list[tuple[str, str]]
 
     @property
     def mark(self) -> Mark:
@@ -143,7 +133,6 @@ class Class:
             student: f"student {order}" for order, student in enumerate(self._shuffled(), 1)
         }
         self._know_names()
-        hints = hints_of(self.records, self.store.work)
         groups: defaultdict[tuple[str, ...], list[Record]] = defaultdict(list)
         for record in self.records:
             for question, mark in record.marks.items():
@@ -159,12 +148,7 @@ class Class:
         self.clusters = {}
         for key, members in groups.items():
             name = hashlib.sha256("\n".join(key).encode()).hexdigest()[:16]
-            found = [
-                (one.student, said)
-                for one in members
-                for said in hints.get((one.student, key[1]), ())
-            ]
-            self.clusters[name] = Cluster(name, key[0], key[1], members, found)
+            self.clusters[name] = Cluster(name, key[0], key[1], members)
 
     def contract(self, cluster: Cluster) -> Contract | None:
         """Return the contract, in the right variant, that judged a cluster, or ``None``."""
@@ -268,9 +252,7 @@ class Class:
             return any(self.earlier(cluster, record) for record in cluster.members)
         if what == "waiting":
             return self.waits(cluster) > 0
-        return what in ("all", self.outcome(cluster)[0]) or (
-            what == "hints" and bool(cluster.hints)
-        )
+        return what in ("all", self.outcome(cluster)[0])
 
     def lines(
         self, cluster: Cluster, record: Record
@@ -356,50 +338,6 @@ class Class:
                 near = [*sorted(own), cell]
             return cells, near, self.store.pictures(digest)
         return [], [], {}
-
-
-#: Things that two students may have in common and that are worth a look.
-ANSWER, CODE = "unusual wrong answer", "code, character by character,"
-TRIED = "unusual wrong answers that one other student also tried"
-
-
-def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) -> Hints:
-    """Return hints for a person, by student and question, which never affect a mark.
-
-    They are unusual wrong answers that are equal, including those tried on the way, and equal code
-    that few share.
-    """
-    hints: Hints = defaultdict(list)
-    few = max(2, int(FEW * len({record.student for record in records})))
-    shared: defaultdict[tuple[str, str, str], set[str]] = defaultdict(set)
-    for record in records:
-        for question, about in record.remembered.items():
-            for one in about.tried:
-                shared[TRIED, question, one].add(record.student)
-        for question, mark in record.marks.items():
-            judged, cell = mark.judged, record.answer(question).cell
-            if judged.outcome == "wrong" and not judged.note and mark.group:
-                shared[ANSWER, question, mark.group].add(record.student)
-            for notebook in record.notebooks:
-                cells = work(notebook.sha256) if cell is not None else ()
-                written = "".join(map(bare, cells[max(0, (cell or 0) - 1) : (cell or 0) + 1]))
-                if cell is not None and cell < len(cells) and len(written) >= SHORTEST_CODE:
-                    shared[CODE, question, written].add(record.student)
-    pairs: Counter[tuple[str, str, str]] = Counter()
-    shared_by_few = [(key, same) for key, same in shared.items() if 2 <= len(same) <= few]
-    for (what, _, _), same in shared_by_few:
-        pairs.update((what, one, other) for one in same for other in same - {one})
-    for (what, question, _), same in shared_by_few:
-        for one in same:
-            several = max(pairs[what, one, other] for other in same - {one})
-            again = f", and {several} such answers in all" if several > 1 and what == ANSWER else ""
-            said = f"the same {what} as {len(same) - 1} other{again}"
-            if what == TRIED:
-                # One alone may be coincidence.
-                said = f"{several} {what}" if several > 1 else ""
-            if said and said not in hints[one, question]:
-                hints[one, question].append(said)
-    return hints
 
 
 # --- the server ---------------------------------------------------------------------------------

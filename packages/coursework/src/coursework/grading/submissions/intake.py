@@ -76,13 +76,10 @@ ARCHIVES = (".zip", ".rar", ".7z", ".tar", ".gz", ".tgz", ".bz2", ".xz")
 INDEXES = ("index.html", "timestamp.txt", GRADESCOPE_TABLE)
 TEXT = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.S)
 REPLY = re.compile(r'<div class="coursework-reply"([^>]{0,2000})>')
-ABOUT_REPLY = re.compile(r'\bdata-(question|tries|tried|help)="([^"]{1,200})"')
-# The most failed answers that we remember for one question.
-MOST_TRIED = 100
+ABOUT_REPLY = re.compile(r'\bdata-(question|tries|help)="([^"]{1,200})"')
 #: The most bytes of pictures that we show from one notebook.
 MOST_BYTES_OF_PICTURES = 4 << 20
 MARKDOWN = "text/markdown"
-TRIED = re.compile(r"[0-9a-f]{6}")
 CHECK = re.compile(r"""\bcheck\(\s*['"]([^'"\n]{1,200})['"]""")
 
 
@@ -864,7 +861,6 @@ def remembered_in(data: bytes) -> dict[str, Remembered]:
         one = found.get(about["question"], Remembered())
         found[about["question"]] = Remembered(
             max(one.tries, int(about["tries"][:6])),
-            tuple(dict.fromkeys((*one.tried, *TRIED.findall(about.get("tried", "")))))[:MOST_TRIED],
             about.get("help", one.help),
         )
     return found
