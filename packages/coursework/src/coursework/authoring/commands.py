@@ -70,11 +70,6 @@ ARGUMENTS = {
             argument(
                 "--site", type=Path, help="folder for the site (default: site, beside the archive)"
             ),
-            argument(
-                "--room",
-                action="store_true",
-                help="also download all packages, for use without a network",
-            ),
         ],
     ),
     "try": (
@@ -170,11 +165,11 @@ def release(
     print(*counted(course, names), sep="\n")
 
 
-def publish(site: Path | None, room: bool) -> None:
+def publish(site: Path | None) -> None:
     from .publish import publish as make
 
     course = _course()
-    page = make(course, site or course.archive.with_name("site"), room)
+    page = make(course, site or course.archive.with_name("site"))
     print(f"The site: {page}")
     print(f"Look at it with: python -m http.server --directory {shlex.quote(str(page.parent))}")
 

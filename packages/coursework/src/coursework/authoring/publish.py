@@ -14,9 +14,6 @@ that it does not know.
 """
 
 import re
-import shutil
-import subprocess
-import sys
 import tempfile
 from collections.abc import Callable
 from importlib import import_module, metadata
@@ -58,7 +55,7 @@ class Parts(TypedDict):
     plugin: str
 
 
-def publish(course: Course, site: str | Path, room: bool = False) -> Path:
+def publish(course: Course, site: str | Path) -> Path:
     """Make the site of a course.
 
     Parameters
@@ -66,8 +63,6 @@ def publish(course: Course, site: str | Path, room: bool = False) -> Path:
     course : Course
     site : path
         The folder to make. A folder with anything but an earlier site is left alone.
-    room : bool
-        Also fetch all wheels that the exercises need, for a room without a network.
 
     Returns
     -------
@@ -96,8 +91,6 @@ def publish(course: Course, site: str | Path, room: bool = False) -> Path:
             make(parts, course.archive.with_name("book"), site)
         except (RuntimeError, ValueError) as error:
             raise AuthorError(str(error)) from None
-        if room:
-            _fetch_wheels(parts["archive"], site / "wheels")
     return site / "index.html"
 
 
@@ -150,25 +143,3 @@ def _maker() -> Callable[[Parts, Path, Path], None]:
         raise AuthorError(f"Several packages make pages: {named}. Uninstall all but one.")
     make: Callable[[Parts, Path, Path], None] = offers[0].load()
     return make
-
-
-def _fetch_wheels(archive: Path, target: Path) -> None:
-    with tempfile.TemporaryDirectory() as folder:
-        shutil.unpack_archive(archive, folder)
-        command = [
-            sys.executable,
-            "-m",
-            "pip",
-            "download",
-            "--quiet",
-            "--disable-pip-version-check",
-            "--only-binary=:all:",
-        ]
-        done = subprocess.run(
-            [*command, "--dest", target, "--requirement", "requirements.txt"],
-            cwd=Path(folder, "exercises"),
-        )
-    if done.returncode:
-        raise AuthorError(
-            "The site is built, but pip could not download all the wheels: see above."
-        )
