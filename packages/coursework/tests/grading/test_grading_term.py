@@ -441,7 +441,7 @@ def test_a_decision_is_handed_on_once_it_is_in_the_marks(late, tmp_path, capsys)
     assert filled(late)[0] == "3"
 
 
-def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, tmp_path):
+def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, capsys):
     """Canvas marks a file as late without a time, which once cost nothing."""
     give(late, replace(late.read("carl", "turns"), notebooks=(RunNotebook(late=True),)))
     rules = late.folder / "term.toml"
@@ -449,7 +449,7 @@ def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, tmp_path):
         with pytest.raises(SystemExit, match="1 submission of .* as late.*marked = 0.1"):
             command(late)
     rules.write_text(rules.read_text().replace("a-day = 0.1", "a-day = 0.1\nmarked = 0.25"))
-    assert filled(late) == ["4.8", "", "4.5"]
+    assert filled(late) == ["4.8", "", "4.5"] and "unknown time" not in capsys.readouterr().out
 
 
 def test_marks_are_handed_on_as_of_a_date(late):

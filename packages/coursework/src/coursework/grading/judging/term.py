@@ -819,7 +819,7 @@ def unknown_times(results: Iterable[Result], term: Term) -> list[str]:
         A system marked work as late, and the term does not say what that costs.
     """
     graded = [one for one in results if one.state not in ("missing", DAMAGED, "not due", EXCUSED)]
-    unknown = [one.assignment for one in graded if one.due and not one.handed_in]
+    unknown = [one.assignment for one in graded if one.due and not (one.handed_in or one.late)]
     marked = [one.assignment for one in graded if one.late and not one.handed_in]
     if marked and term.late.marked is None and term.late.costs:
         raise BadTerm(
