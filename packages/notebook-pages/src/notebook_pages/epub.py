@@ -201,7 +201,12 @@ def files(site, title, author):
         moment=f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}", items="\n".join(items),
         spine="\n".join(spine),
     )  # fmt: skip
-    return written
+    # Java's parser of XML, which readers and epubcheck use, fails where a character of four bytes
+    # extends over the end of its buffer, so write characters as references.
+    return {
+        name: text if name.endswith(".css") else text.encode("ascii", "xmlcharrefreplace").decode()
+        for name, text in written.items()
+    }
 
 
 def make(site, title, author):
