@@ -1191,13 +1191,19 @@ def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(
     assert feedback.read_bytes() == data and not list(tmp_path.glob(".half*"))
 
 
-def test_for_nbgrader(course, tmp_path, capsys):
+def test_for_nbgrader_and_gradescope(course, tmp_path, capsys):
     out = str(course / "out")
     main(["export", out, "--nbgrader", str(tmp_path / "grades.csv")])
     rows = {row["student_id"]: row for row in rows_of(tmp_path / "grades.csv")}
     assert list(rows["right"]) == list(gradebooks.NBGRADER)
     mistaken = rows["mistaken"]
     assert [mistaken[name] for name in ("assignment", "score", "max_score")] == ["turns", "4", "6"]
+    gradebooks.write_gradescope(tmp_path / "results.json", gradebooks.Marks(Store(out)), "mistaken")
+    results = json.loads((tmp_path / "results.json").read_text())
+    assert results["score"] == 4 and [test["score"] for test in results["tests"]] == [1, 0, 3]
+    assert (
+        results["tests"][0]["max_score"] == 2 and "the transpose" in results["tests"][0]["output"]
+    )
     with pytest.raises(SystemExit, match="choose --lms"):
         main(["export", out])
 

@@ -381,4 +381,7 @@ def test_nobody_else_on_the_machine_reads_marks(tmp_path):
     course.hands_in("ada", "hw1")
     course.grade()
     assert stat.S_IMODE(course.marks.stat().st_mode) == 0o700
+    made = ["gradescope", "marks", "--out", "auto.zip", "--solutions", "solutions"]
+    course.run(*made, "--assignment", "hw1")
+    assert stat.S_IMODE((tmp_path / "auto.zip").stat().st_mode) == 0o600
     assert json.loads((course.marks / "refused.json").read_text())

@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import tempfile
 import zipfile
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from importlib import import_module
 from pathlib import Path
@@ -43,6 +43,7 @@ DISTRIBUTIONS = {
             "nbclient",
             "nbformat",
             "numpy",
+            "packaging",
             "pillow",
             "pyyaml",  # for Gradescope's table of submissions
             "tornado",  # for the page to mark in
@@ -295,18 +296,18 @@ def _digest(content: bytes) -> str:
 
 
 def write_zip(target: Path, files: Mapping[str, bytes]) -> Path:
-    """Write contents by name to a zip file."""
+    """Write contents by name to a zip file; the same contents give the same bytes."""
     target.write_bytes(zipped(files))
     return target
 
 
-def zipped(files: Mapping[str, bytes]) -> bytes:
-    """Return a zip file of contents by name; the same contents give the same bytes."""
+def zipped(files: Mapping[str, bytes], programs: Collection[str] = ()) -> bytes:
+    """Return a zip file of contents by name, some of which are ``programs`` that can be run."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as box:
         for name in sorted(files):
             entry = zipfile.ZipInfo(name, TIME)
             entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = 0o644 << 16
+            entry.external_attr = (0o755 if name in programs else 0o644) << 16
             box.writestr(entry, files[name])
     return packed.getvalue()

@@ -221,6 +221,15 @@ ARGUMENTS = {
             ),
         ],
     ),
+    "gradescope": (
+        "build a Gradescope autograder for one assignment",
+        [
+            argument("marks", metavar="MARKS", help="a folder with term.toml"),
+            argument("--out", required=True, metavar="FILE.zip", help="file for the autograder"),
+            SOLUTIONS,
+            argument("--assignment", required=True, metavar="NAME", help="the assignment"),
+        ],
+    ),
     "why": (
         "explain a mark, with its history",
         [
@@ -527,6 +536,16 @@ def why(student: str, assignment: str, marks: str) -> None:
     print(*life_of(Store(marks), student, assignment), sep="\n")
 
 
+def gradescope(marks: str, out: str, solutions: str | None, assignment: str) -> None:
+    from .export.gradescope import write_autograder
+
+    stems = write_autograder(out, marks, assignment, solutions=solutions)
+    print(
+        f"{out} grades {', '.join(stems)}. It contains the solutions and your secret. Upload it, "
+        "but share it with nobody."
+    )
+
+
 def cluster(
     keys: str, host: str | None, port: int, worker: str | None, workers: int | None
 ) -> None:
@@ -574,6 +593,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "merge": merge,
     "term": term,
     "export": export,
+    "gradescope": gradescope,
     "why": why,
     "cluster": cluster,
 }

@@ -1,4 +1,4 @@
-"""Export of marks to the gradebook that an instructor exported, and to nbgrader.
+"""Export of marks to the gradebook that an instructor exported, to nbgrader and to Gradescope.
 
 We fill a gradebook in place. Only the cells of one column change, and every other byte, with the
 order, quotation marks and line ends, stays as the system wrote it, so that the system accepts it.
@@ -8,6 +8,7 @@ Nothing that a student wrote gets into it.
 import datetime
 import functools
 import getpass
+import json
 import math
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -15,6 +16,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...authoring.packing import zipped
+from ...checking.reply import plain_text
+from ...checking.writing import readable
 from ..judging.journal import Exported, Given, Journal, with_decisions
 from ..judging.term import DAMAGED, EXCUSED, Result, Term, result_of, term_of, unknown_times
 from ..record import Identity, Record
@@ -751,3 +754,33 @@ def write_nbgrader(path: str | Path, marks: Marks) -> str:
         f"{number_of(len(rows), 'mark')}: {path}. "
         f"Left out, because a decision is pending: {pending}."
     )
+
+
+def write_gradescope(path: str | Path, marks: Marks, student: str) -> None:
+    """Write a Gradescope autograder's results for one student."""
+    tests: list[dict[str, str | float]] = []
+    for record in marks.students[student]:
+        for mark in record.marks.values():
+            tests.append(
+                {
+                    "name": readable(mark.title, 200),
+                    "number": str(len(tests) + 1),
+                    "score": mark.points,
+                    "max_score": mark.worth,
+                    # Give no status if a person has still to decide.
+                    **(
+                        {}
+                        if mark.outcome == "undecided"
+                        else {
+                            "status": "passed"
+                            if mark.outcome in ("correct", "decided")
+                            else "failed"
+                        }
+                    ),
+                    "visibility": "visible",
+                    "output_format": "text",
+                    "output": readable("\n".join([mark.outcome, *map(plain_text, mark.messages)])),
+                }
+            )
+    results = {"score": marks.points(student), "output_format": "text", "tests": tests}
+    write(path, json.dumps(results, indent=1, ensure_ascii=False) + "\n")
