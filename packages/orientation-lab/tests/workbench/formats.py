@@ -157,7 +157,9 @@ def motion_sense():
     angles = found["truth"].as_euler("ZXY")[:, [2, 1, 0]]
     columns = [np.arange(len(time)), angles, gravity, gyr, acc / GRAVITY - gravity]
     return Form(
-        _table(names, columns), {"gyroscope": 1, "accelerometer": 1 / GRAVITY}, counted=True
+        _table(names, columns),
+        {"gyroscope": 1, "accelerometer": 1 / GRAVITY, "angles": 1},
+        counted=True,
     )
 
 
@@ -234,7 +236,7 @@ def shimmer():
 
 
 def gyroflow():
-    """Counts, with their scales in the lines above."""
+    """Counts, whose scales stand in the lines above; gravity tells them as well."""
     _, time, gyr, acc, _, _ = _parts()
     head = [
         "GYROFLOW IMU LOG",
@@ -252,7 +254,7 @@ def gyroflow():
     columns = [1000 * time, gyr / 0.00122173047, acc / GRAVITY / 0.00048828125]
     return Form(
         _table(["t", "gx", "gy", "gz", "ax", "ay", "az"], columns, number="{:.0f}", head=head),
-        {"gyroscope": 1, "accelerometer": 1 / GRAVITY},
+        {"gyroscope": 1 / 0.00122173047, "accelerometer": 1 / GRAVITY / 0.00048828125},
     )
 
 
@@ -402,35 +404,6 @@ def matlab_mobile():
     )
 
 
-def flight_test():
-    """As those who fly name it: p, q and r about the axes, angles as
-    Greek letters, the time of the day.
-    """
-    found, time, gyr, acc, _, _ = _parts()
-    angles = found["truth"].as_euler("ZYX", degrees=True)[:, ::-1]
-    names = [
-        "TIME",
-        "P (deg/s)",
-        "Q (deg/s)",
-        "R (deg/s)",
-        "AX (g)",
-        "AY (g)",
-        "AZ (g)",
-        "PHI (deg)",
-        "THETA (deg)",
-        "PSI (deg)",
-    ]
-    rows = [
-        f"09:{15 + int(t) // 60:02}:{int(t) % 60:02}:{round(1000 * t) % 1000:03},"
-        + ",".join(f"{one:.6f}" for one in row)
-        for t, row in zip(time, np.column_stack([DEG * gyr, acc / GRAVITY, angles]), strict=True)
-    ]
-    return Form(
-        "\n".join([",".join(names), *rows]).encode(),
-        {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "angles": 1},
-    )
-
-
 def polar():
     """A table for each sensor with the same three headings; [G] is gauss, as
     only the name of its table says.
@@ -485,23 +458,6 @@ def core_motion():
     )
 
 
-def one_sensor_a_line():
-    """What many small telephone programs write: a line for each sensor,
-    and its name in the second column.
-    """
-    found, lines = recording(), ["timestamp,sensor,x,y,z"]
-    kinds = {
-        "ACCELEROMETER": "accelerometer",
-        "GYROSCOPE": "gyroscope",
-        "MAGNETIC_FIELD": "magnetometer",
-    }
-    for k, t in enumerate(found["time"]):
-        for name, kind in kinds.items():
-            numbers = ",".join(f"{one:.6f}" for one in found[kind][k])
-            lines.append(f"{1_709_629_180_120 + round(1000 * t)},{name},{numbers}")
-    return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1})
-
-
 def xsens_mtw_with_a_clock():
     """Its clock counts ten thousandths of a second, which nothing
     says but the rate above the table.
@@ -541,10 +497,7 @@ FORMS = [
     no_headings,
     arduino,
     matlab_mobile,
-    flight_test,
     polar,
     core_motion,
-    # fmt: skip
-    one_sensor_a_line,
     xsens_mtw_with_a_clock,
 ]

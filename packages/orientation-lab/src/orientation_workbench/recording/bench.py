@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from itertools import permutations, product
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,7 +17,6 @@ from .content import (
     DEGREES,
     GRAVITY,
     SENSORS,
-    places_by_name,
     read_content,
     unit_in_brackets,
     unit_of_field,
@@ -131,7 +130,10 @@ class _Bench:
         # Whether the gyroscope's values are raw counts.
         self.counts = False
         self.rates = self.forces = self.field = self.oriented = None
-        self.warmth = np.interp(self.time, *content.temperature)
+        warm = content.groups.get("temperature")
+        self.warmth = 0 * self.time
+        if warm:
+            self.warmth = np.interp(self.time, warm.time, warm.values[:, 0])
 
     def say(
         self,
@@ -145,6 +147,13 @@ class _Bench:
         advice = "" if light == GREEN else advice.strip()
         self.verdicts.append(Verdict(about, light, words, dict(evidence or {}), advice))
 
+    def _missing(self, kind: str) -> None:
+        words, advice = (
+            "no heading names it",
+            f"If the file has one, name its columns: --columns {kind}=2-4.",
+        )
+        self.say(kind, UNKNOWN, words, {}, advice)
+
     # --- what is in it --------------------------------------------------------------------------
 
     def clock(self) -> None:
@@ -154,14 +163,6 @@ class _Bench:
         held = "; ".join(f"{kind}: {', '.join(group.names)}" for kind, group in groups.items())
         unused = f". Not used: {', '.join(self.content.unused)}" if self.content.unused else ""
         self.say("content", GREEN, held + unused)
-        for kind, group in groups.items():
-            if group.called != kind:
-                self.say(
-                    "headings",
-                    RED,
-                    f"{', '.join(group.names)}: the headings say {group.called}, but the values "
-                    f"behave like those of the {kind}",
-                )
         if self.content.counted:
             return self.say(
                 "time",
@@ -225,7 +226,7 @@ class _Bench:
 
     def gyroscope(self) -> None:
         if "gyroscope" not in self.raw:
-            return self.say("gyroscope", UNKNOWN, "the file has none")
+            return self._missing("gyroscope")
         raw = self.raw["gyroscope"]
         self._saturation("gyroscope")
         # The verdict on the clock has already asked for the rate.
@@ -679,7 +680,7 @@ class _Bench:
 
     def accelerometer(self) -> None:
         if "accelerometer" not in self.raw:
-            return self.say("accelerometer", UNKNOWN, "the file has none")
+            return self._missing("accelerometer")
         raw = self.raw["accelerometer"]
         self._saturation("accelerometer")
         quiet = [raw[pose.first : pose.last] for pose in self.still] or [raw]
@@ -1223,21 +1224,17 @@ def _matrices(candidates: Mapping[str, Array], reading: Reading) -> Array:
 
 
 def _angle_readings(group: Group) -> dict[str, Array]:
-    """Return the orientations that three angles may mean, by order, axes and signs."""
+    """Return the orientations that yaw, pitch and roll may mean, by sequence and signs."""
     degrees = np.abs(group.values).max() > 6.5
     values = np.radians(group.values) if degrees else group.values
-    order = places_by_name(group.names)
     candidates, unit = {}, "degrees" if degrees else "radians"
-    for sequence, places, signs in product(
+    for sequence, signs in product(
         ("zyx", "zxy", "xyz", "xzy", "yxz", "yzx"),
-        [order] if order else list(permutations(range(3))),
         ((1, 1, 1), (1, -1, 1), (-1, 1, 1), (1, 1, -1)),
     ):
-        names = [
-            "-" * (sign < 0) + group.names[place] for sign, place in zip(signs, places, strict=True)
-        ]
+        names = ["-" * (sign < 0) + name for sign, name in zip(signs, group.names, strict=True)]
         candidates[f"body fixed {sequence} ({', '.join(names)}), {unit}"] = dcm_from_body_fixed(
-            values[:, places] * signs, sequence
+            values * signs, sequence
         )
     return candidates
 

@@ -7,9 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from orientation import MultiplicativeKalmanFilter, dcm_from_two_directions
+from orientation import (
+    MultiplicativeKalmanFilter,
+    dcm_from_two_directions,
+    rotation_vector_from_dcm,
+)
 
-from .motion import lasting, steps_of, to_rotation_vectors, turned
+from .motion import lasting, steps_of, turned
 
 if TYPE_CHECKING:
     from .motion import Stretch
@@ -117,7 +121,7 @@ def in_blocks(
     ends = np.arange(count) * size + size - 1
     dcms = turned(rates, steps_of(time))
     at_end = dcms[ends]
-    turns = to_rotation_vectors(at_end[1:] @ at_end[:-1].swapaxes(-1, -2))
+    turns = rotation_vector_from_dcm(at_end[1:] @ at_end[:-1].swapaxes(-1, -2))
     means = turns / np.diff(time[ends])[:, None]
     averaged = []
     for values in vectors:
@@ -286,7 +290,7 @@ def judge(given: FilterInput, progress: Callable[[float], None] | None = None) -
         covariances[[0, 1], at] = estimate.covariance[..., :3, :3]
         if progress and k % 100 == 0:
             progress(k / count)
-    difference = to_rotation_vectors(dcms[0] @ dcms[1].swapaxes(-1, -2))
+    difference = rotation_vector_from_dcm(dcms[0] @ dcms[1].swapaxes(-1, -2))
     claim = covariances[0] + covariances[1]
     ups = dcms[0] @ UP
     inner = slice(count // 5, max(count // 5 + 1, count - count // 5))

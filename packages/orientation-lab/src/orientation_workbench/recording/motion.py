@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from orientation import dcm_from_rotation_vector
+from orientation import (
+    dcm_from_quaternion,
+    dcm_from_rotation_vector,
+    rotation_vector_from_dcm,
+)
 
 if TYPE_CHECKING:
     from .table import Array
@@ -70,21 +74,6 @@ def turned(rates: Array, steps: Array) -> Array:
     for k in range(1, size):
         dcms[..., k, :, :, :] = dcms[..., k, :, :, :] @ dcms[..., k - 1, -1:, :, :]
     return dcms.reshape(*rates.shape[:-2], size * size, 3, 3)[..., :count, :, :]
-
-
-def to_rotation_vectors(dcms: Array) -> Array:
-    """Return rotation vectors of matrices, for rotations of less than half a turn."""
-    axis = np.stack(
-        [
-            dcms[..., 1, 2] - dcms[..., 2, 1],
-            dcms[..., 2, 0] - dcms[..., 0, 2],
-            dcms[..., 0, 1] - dcms[..., 1, 0],
-        ],
-        axis=-1,
-    )
-    sine = np.linalg.norm(axis, axis=-1) / 2
-    angle = np.arctan2(sine, (np.trace(dcms, axis1=-2, axis2=-1) - 1) / 2)
-    return axis / 2 * (angle / np.where(sine > 1e-12, sine, 1.0) + (sine <= 1e-12))[..., None]
 
 
 def steps_of(time: Array) -> Array:
@@ -448,13 +437,7 @@ class Reading(NamedTuple):
 def dcm_of_quaternions(values: Array, order: str) -> Array:
     """Return ``B_C_N`` of quaternions, read as in the book, with their scalar first or last."""
     values = values / np.linalg.norm(values, axis=1, keepdims=True)
-    w, x, y, z = (values if order == "scalar first" else np.roll(values, 1, axis=1)).T
-    rows = [
-        [w * w + x * x - y * y - z * z, 2 * (x * y + w * z), 2 * (x * z - w * y)],
-        [2 * (x * y - w * z), w * w - x * x + y * y - z * z, 2 * (y * z + w * x)],
-        [2 * (x * z + w * y), 2 * (y * z - w * x), w * w - x * x - y * y + z * z],
-    ]
-    return np.moveaxis(np.array(rows), -1, 0)
+    return dcm_from_quaternion(values if order == "scalar first" else np.roll(values, 1, axis=1))
 
 
 def readings(
@@ -500,7 +483,7 @@ def readings(
             # B_C_N, or its transpose, whose rotations are relative to the other frame.
             forth, back = dcms[1:], dcms[:-1].swapaxes(-1, -2)
             turn = forth.swapaxes(-1, -2) @ dcms[:-1] if conjugate else forth @ back
-            turn = to_rotation_vectors(turn)[use]
+            turn = rotation_vector_from_dcm(turn)[use]
             products = turn.T @ measured[use]
             squares = (turn**2).sum() + whole - 2 * np.einsum("kij,ij->k", ASSIGNMENTS, products)
             found += [

@@ -48,6 +48,8 @@ ELSEWHERE = {
     b"MATLAB 5.0": "a MATLAB file: convert it to CSV with writetable or writematrix",
 }
 MISSING = {"", "nan", "null", "none", "na", "n/a", "-", "--"}
+#: The fewest rows of a table.
+FEWEST = 8
 # The largest fraction of rows that may not fit before a file is refused.
 MOST_BROKEN = 0.02
 
@@ -222,56 +224,11 @@ def _from_text(text: str, name: str) -> list[Table]:
     delimiter = max(DELIMITERS, key=lambda one: _numbers_per_line(lines, one))
     rows = [_split(line, delimiter) for line in lines]
     comma = delimiter != "," and sum(_is_comma(field) for row in rows[:400] for field in row) > 10
-    key = _key_column(rows, comma)
-    if key is not None:
-        return _from_log(rows, name, comma, key)
-    return [_scaled(_table(rows, name, comma))]
-
-
-def _key_column(rows: Sequence[Sequence[str]], comma: bool) -> int | None:
-    """Return the column that says what each row holds, if rows of different kinds alternate."""
-    rows = [row for row in rows if len(row) > 3]
-    if len(rows) <= 20:
-        return None
-    sample = rows[len(rows) // 4 :][:400]
-    head: Sequence[str] = next(
-        (row for row in rows if sum(_number(field, comma) is None for field in row) > len(row) / 2),
-        (),
-    )
-    for k in range(min(map(len, sample))):
-        found = [row[k] for row in sample]
-        keys = set(found)
-        words = sum(_number(field, comma) is None for field in found) > 0.9 * len(found) and len(
-            keys
-        ) < 0.2 * len(found)
-        if words and k == 0:
-            return 0
-        # Labels change now and then, but alternating rows change the key nearly every time.
-        turns = sum(one != other for one, other in zip(found, found[1:], strict=False)) > 0.3 * len(
-            found
-        )
-        called = k < len(head) and re.fullmatch(
-            r"i|id|(?:imu|sensor|device|instance)[ _]?(?:id)?", head[k].lower()
-        )
-        if turns and 1 < len(keys) < 16 and (words or called):
-            return k
-    return None
-
-
-def _scaled(table: Table) -> Table:
-    """Scale raw counts if the lines above them name the scales, as stabilised cameras do."""
-    scales = {
-        letter: float(value)
-        for letter, value in re.findall(r"^([tgam])scale\W+([\d.eE+-]+)$", table.head, re.M)
-    }
-    if not scales:
-        return table
-    units = {"t": "s", "g": "rad/s", "a": "g", "m": "gauss"}
-    columns, values = list(table.columns), table.values.copy()
-    for k, name in enumerate(table.columns):
-        if name[0] in scales and name[1:] in ("", "x", "y", "z"):
-            columns[k], values[:, k] = f"{name} [{units[name[0]]}]", values[:, k] * scales[name[0]]
-    return table._replace(columns=columns, values=values)
+    first = Counter(row[0] for row in rows if len(row) > 3 and _number(row[0], comma) is None)
+    kinds = [kind for kind, count in first.items() if count >= FEWEST]
+    if len(kinds) > 1:
+        return _from_log(rows, kinds, name, comma)
+    return [_table(rows, name, comma)]
 
 
 def _split(line: str, delimiter: str | None) -> list[str]:
@@ -294,24 +251,11 @@ def _number(field: str, comma: bool = False) -> float | None:
         pass
     if field.lower() in MISSING:
         return float("nan")
-    if ":" in field:
-        try:
-            # Some write a colon before the milliseconds, or the day first and points in the date.
-            day = re.sub(
-                r"(:\d\d:\d\d)[:_,](\d+)",
-                r"\1.\2",
-                re.sub(r"^(\d\d)\.(\d\d)\.(\d{4})", r"\3-\2-\1", field)
-                .replace("/", "-")
-                .replace("Z", "+00:00"),
-            )
-            return datetime.fromisoformat(day).timestamp()
-        except ValueError:
-            clock = re.fullmatch(r"(\d+):(\d\d):(\d\d(?:[.,:]\d+)?)", field)
-            if clock:
-                hours, minutes, seconds = (
-                    float(part.replace(",", ".").replace(":", ".")) for part in clock.groups()
-                )
-                return 3600 * hours + 60 * minutes + seconds
+    # A date, which may have the day first and points, with a time, or a time alone.
+    day = re.sub(r"^(\d\d)\.(\d\d)\.(\d{4})", r"\3-\2-\1", field).replace("/", "-")
+    for text in (day, f"2000-01-01T{field}"):
+        with suppress(ValueError):
+            return datetime.fromisoformat(text).timestamp()
     return None
 
 
@@ -353,7 +297,7 @@ def _table(
             _number(row[k], comma) is not None and row[k].lower() not in MISSING for _, row in full
         )
     ]
-    if len(numeric) < 3 or len(full) < 8:
+    if len(numeric) < 3 or len(full) < FEWEST:
         line, row = (sample or there)[0]
         raise RecordingError(
             f"{name} is not a table of numbers: it has {number_of(len(full), 'row')} of the same "
@@ -370,7 +314,7 @@ def _table(
         for k, (_, row) in enumerate(there)
         if len(row) == width and all(value is not None for value in values(row))
     )
-    if columns is None:
+    if columns is None or len(columns) != width:
         columns = _names([row for _, row in there[:begin]], width)
     kept: list[list[float | None]] = []
     broken: list[str] = []
@@ -431,48 +375,26 @@ def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
     return [name or f"column {k + 1}" for k, name in enumerate(names)]
 
 
-def _from_log(rows: Sequence[list[str]], name: str, comma: bool, key: int) -> list[Table]:
-    """Split a log with several kinds of lines by their key word, as in drones and phones."""
-    lines: dict[str, list[tuple[int, list[str]]]] = {}
-    names: dict[str, list[str]] = {}
-    for number, row in enumerate(rows, 1):
-        if len(row) < max(3, key + 1):
-            continue
-        # In ArduPilot: type, length, name, formats, names of the columns.
-        if row[0] == "FMT" and len(row) > 5:
-            names[row[3]] = row[5:]
-        elif row[0].startswith("#"):
-            # In Android, a heading of each kind is among the comments.
-            names[row[0].lstrip("# ")] = row[1:]
-        else:
-            # Each of several instruments of one kind gets a table of its own.
-            columns = names.get(row[0], [])
-            which = columns.index("I") + 1 if "I" in columns else len(row)
-            kind = row[key] if which >= len(row) or row[which] == "0" else f"{row[0]} {row[which]}"
-            lines.setdefault(kind, []).append((number, row[:key] + row[key + 1 :]))
-    # One line of headings is common to all.
-    if key:
-        heads = [found[0][1] for found in lines.values() if len(found) < 8]
-        names = {kind: head for kind in lines for head in heads[:1]}
+def _from_log(
+    rows: Sequence[list[str]], kinds: Sequence[str], name: str, comma: bool
+) -> list[Table]:
+    """Make a table of each kind of line that begins with its name, as in drones and phones."""
+    # In ArduPilot, a line FMT has type, length, name, formats, and the names of the columns. In
+    # Android, the names of the columns are in a comment.
+    heads = {row[3]: row[5:] for row in rows if row[0] == "FMT" and len(row) > 5}
+    heads |= {row[0].lstrip("# "): row[1:] for row in rows if row and row[0].startswith("#")}
     tables = []
-    for kind, found in lines.items():
-        if len(found) < 8:
-            continue
-        called = names.get(kind.partition(" ")[0])
-        width = Counter(len(row) for _, row in found).most_common(1)[0][0]
-        try:
-            tables.append(
-                _table(
-                    [row for _, row in found],
-                    kind if _number(kind) is None else f"{name} {kind}",
-                    comma,
-                    [number for number, _ in found],
-                    called if called and len(called) == width else None,
-                )
-            )
-        except RecordingError:
-            # This kind of line holds no measurements.
-            continue
+    for kind in kinds:
+        lines = [(number, row[1:]) for number, row in enumerate(rows, 1) if row and row[0] == kind]
+        columns = heads.get(kind)
+        # Of several instruments of a kind, which column I distinguishes, only the first counts.
+        if columns and "I" in columns:
+            which = columns.index("I")
+            lines = [(number, row) for number, row in lines if row[which : which + 1] == ["0"]]
+        # Other kinds of lines hold no measurements.
+        with suppress(RecordingError):
+            numbers = [number for number, _ in lines]
+            tables.append(_table([row for _, row in lines], kind, comma, numbers, columns))
     if not tables:
         raise RecordingError(
             f"{name} looks like a log, but no kind of line in it forms a table of numbers"
