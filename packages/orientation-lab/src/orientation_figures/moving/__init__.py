@@ -6,6 +6,7 @@
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+# These imports also tell the book's build which files a cell with a figure uses.
 if TYPE_CHECKING:
     from .belt import BeltFigure
     from .challenge import ChallengeFigure
