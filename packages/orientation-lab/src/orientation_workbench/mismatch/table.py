@@ -467,35 +467,26 @@ def readings(kind, declared, degrees_likely=False):
         Whether a number exceeds a whole turn in radians, so that degrees are expected.
     """
     base = BOOK | ({"unit": "degrees"} if degrees_likely else {}) | declared
-    partial = [({}, 0, 0.0, (), ())]
-    for group in KINDS[kind]:
-        name, longer = group["group"], []
-        for chosen, faults, rarity, words, shared in partial:
-            for option in group["choices"]:
-                usual = base.get(name) == option["value"]
-                free = name not in base
-                more = 0 if usual or free else option["faults"] or 1
-                if faults + more > MOST_FAULTS:
-                    continue
-                said = () if usual else (option["words"],)
-                like = (name, option["value"])
-                alike = (like,) if more and like in SHARED else ()
-                longer.append(
-                    (
-                        chosen | {name: option["value"]},
-                        faults + more,
-                        rarity + (0 if usual else option["rarity"]),
-                        words + said,
-                        shared + alike,
-                    )
-                )
-        partial = longer
-    return [
-        {"kind": kind, "choices": chosen, "faults": faults, "rarity": rarity, "words": list(words),
-         "shared": sum(1 << SHARED.index(like) for like in shared),
-         "codes": _codes(chosen, base, declared)}
-        for chosen, faults, rarity, words, shared in partial
-    ]  # fmt: skip
+    names = [group["group"] for group in KINDS[kind]]
+    found = []
+    for options in itertools.product(*(group["choices"] for group in KINDS[kind])):
+        chosen = dict(zip(names, options))
+        choices = {name: option["value"] for name, option in chosen.items()}
+        other = {name: option for name, option in chosen.items()
+                 if base.get(name) != option["value"]}  # fmt: skip
+        # A choice that nothing declares is a finding, not a fault.
+        wrong = [name for name in other if name in base]
+        faults = sum(other[name]["faults"] or 1 for name in wrong)
+        if faults <= MOST_FAULTS:
+            found.append({
+                "kind": kind, "choices": choices, "faults": faults,
+                "rarity": sum((option["rarity"] for option in other.values()), 0.0),
+                "words": [option["words"] for option in other.values()],
+                "shared": sum(1 << SHARED.index((name, choices[name])) for name in wrong
+                              if (name, choices[name]) in SHARED),
+                "codes": _codes(choices, base, declared),
+            })  # fmt: skip
+    return found
 
 
 def _codes(choices, base, declared):
