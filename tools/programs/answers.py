@@ -15,6 +15,7 @@ from importlib import import_module
 from importlib.metadata import version
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from pkgutil import resolve_name
 from sysconfig import get_paths
 
 import numpy as np
@@ -269,18 +270,33 @@ class Factor(np.ndarray):
         return Factor(np.asarray(self) @ np.asarray(other))
 
 
+#: What a program's lines on the card need in Python: each name and where it is, or, without a name,
+#: a module all of whose names they need.
+NAMES = {
+    "OpenCV": (("cv2", "cv2"),),
+    "OpenCV solvePnP": (("cv2", "cv2"),),
+    "SciPy": (("Rotation", "scipy.spatial.transform:Rotation"),),
+    "pytransform3d": (("pr", "pytransform3d.rotations"),),
+    "transforms3d": (("", "transforms3d.euler"), ("", "transforms3d.quaternions")),
+    "COLMAP": (("pycolmap", "pycolmap"),),
+    "OpenGL view": (("glm", "pyglm.glm"),),
+    "nerfstudio": (("torch", "torch"),),
+    "kornia": (("torch", "torch"), ("", "kornia.geometry.conversions")),
+    "Isaac Lab 2": (("torch", "torch"),),
+    "Blender": (("bpy", "bpy"), ("", "mathutils")),
+    "Drake": (("", "pydrake.math"), ("", "pydrake.common.eigen_geometry")),
+    "PyBullet": (("", "pybullet"),),
+}
+
+
 def names_of(program):
     """Return the names that a program's lines on the card need in Python."""
     names = {"np": np}
-    if program in ("OpenCV", "OpenCV solvePnP"):
-        names["cv2"] = import_module("cv2")
-    if program == "SciPy":
-        names["Rotation"] = import_module("scipy.spatial.transform").Rotation
-    if program == "pytransform3d":
-        names["pr"] = import_module("pytransform3d.rotations")
-    if program == "transforms3d":
-        names["euler2mat"] = import_module("transforms3d.euler").euler2mat
-        names["quat2mat"] = import_module("transforms3d.quaternions").quat2mat
+    for name, place in NAMES.get(program, ()):
+        found = resolve_name(place)
+        names |= {name: found} if name else vars(found)
+    if program == "Isaac Lab 2":
+        names |= vars(isaac_mathematics())
     if program == "Eigen (C++)":
         module, units = import_module("eigenpy"), np.eye(3)
         names["Vector3d"] = type(
@@ -290,25 +306,6 @@ def names_of(program):
             module.AngleAxis(angle, axis).toRotationMatrix()
         )
         names["Quaterniond"] = lambda *parts: module.Quaternion(*parts).toRotationMatrix()
-    if program == "COLMAP":
-        names["pycolmap"] = import_module("pycolmap")
-    if program == "OpenGL view":
-        names["glm"] = import_module("pyglm.glm")
-    if program in ("kornia", "nerfstudio", "Isaac Lab 2"):
-        names["torch"] = import_module("torch")
-    if program == "kornia":
-        names |= vars(import_module("kornia.geometry.conversions"))
-    if program == "Isaac Lab 2":
-        names |= vars(isaac_mathematics())
-    if program == "Blender":
-        import_module("bpy")
-        names |= vars(import_module("mathutils"))
-    if program == "Drake":
-        names |= vars(import_module("pydrake.math")) | vars(
-            import_module("pydrake.common.eigen_geometry")
-        )
-    if program == "PyBullet":
-        names |= vars(import_module("pybullet"))
     return names
 
 
