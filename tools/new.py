@@ -115,13 +115,14 @@ def code(text, **metadata):
     return nbformat.v4.new_code_cell(text, metadata=metadata)
 
 
-def question_cells(name, kind):
+def question_cells(name, kind, example):
     """Return the two cells of a question: the answer, and its check with the author's facts."""
-    example = EXAMPLES[kind]
-    symbols = "theta = sm.symbols('theta')\n" * ("theta" in example.code)
     arguments = ", ".join(filter(None, [f"kind={kind!r}", example.arguments]))
     return [
-        code(f"{symbols}### BEGIN SOLUTION\n{example.code}\n### END SOLUTION"),
+        code(
+            "theta = sm.symbols('theta')\n" * ("theta" in example.code)
+            + f"### BEGIN SOLUTION\n{example.code}\n### END SOLUTION"
+        ),
         code(
             f"check('{name}', {example.variable})\n### BEGIN HIDDEN TESTS\n"
             f"question('{name}', {arguments}, worth=2,\n"
@@ -131,8 +132,8 @@ def question_cells(name, kind):
     ]
 
 
-def asked(kind):
-    return f"Set `{EXAMPLES[kind].variable}` to {EXAMPLES[kind].is_}."
+def asked(example):
+    return f"Set `{example.variable}` to {example.is_}."
 
 
 def chapter_cells(name, title):
@@ -170,7 +171,7 @@ def chapter_cells(name, title):
             "## Exercises",
             f"```{{exercise}} {TO_BE_WRITTEN}\n:label: exercise-{name}\n"
             f"{TO_BE_WRITTEN}: the question. "
-            f"{asked('expression')}\n```",
+            f"{asked(EXAMPLES['expression'])}\n```",
         ),
         code(
             f"from coursework import check\n\n{EXAMPLES['expression'].variable} = ...  # your "
@@ -192,13 +193,21 @@ def exercise_cells(notebook, question, title, kind):
     number = 1 + sum(
         cell.cell_type == "markdown" and cell.source.startswith("## ") for cell in notebook.cells
     )
+    example = EXAMPLES[kind]
+    # Each answer of a notebook has a different name.
+    if any(f", {example.variable})\n" in cell.source for cell in notebook.cells):
+        example = example._replace(
+            variable=f"{example.variable}_{number}",
+            code=re.sub(rf"\b{example.variable}\b", rf"\g<0>_{number}", example.code),
+            is_=example.is_.replace(f"`{example.variable}", f"`{example.variable}_{number}"),
+        )
     return [
         markdown(
             f"## {number}. {title}",
             f"{TO_BE_WRITTEN}: the question, with symbols, frames in order, units of angles.",
-            asked(kind),
+            asked(example),
         ),
-        *question_cells(question, kind),
+        *question_cells(question, kind, example),
     ]
 
 
@@ -271,7 +280,10 @@ def new_chapter(name, title, after):
     nbformat.write(normalise(new), chapter)
     add_cells(
         CHAPTERS_SOURCE,
-        [markdown(f"## {title}"), *question_cells(f"chapters/{name}", "expression")],
+        [
+            markdown(f"## {title}"),
+            *question_cells(f"chapters/{name}", "expression", EXAMPLES["expression"]),
+        ],
     )
     add_cells(
         SOLUTIONS[-1],
@@ -334,8 +346,11 @@ def main():
     )
     question.set_defaults(make=new_question)
     options = vars(parser.parse_args())
-    print(*options.pop("make")(**options), sep="\n")
-    print(f"Now replace each {TO_BE_WRITTEN}; `make check` lists them.")
+    print(
+        *options.pop("make")(**options),
+        f"Now replace each {TO_BE_WRITTEN}; `make check` lists them.",
+        sep="\n",
+    )
 
 
 if __name__ == "__main__":

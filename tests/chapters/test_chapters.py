@@ -192,11 +192,11 @@ def test_a_new_question_of_every_kind_is_one_that_can_be_released(book):
         cells=[new.code("import sympy as sm\n\nfrom coursework import check")]
     )
     nbformat.write(notebook, path)
-    for kind in new.EXAMPLES:
-        new.new_question(f"trial/{kind.replace(' ', '-').lower()}", "", kind)
-    assert len(read_source(path).questions) == len(new.EXAMPLES)
-    with pytest.raises(SystemExit, match="already has a question trial/words"):
-        new.new_question("trial/words", "", "words")
+    for number, kind in enumerate([*new.EXAMPLES] * 2):
+        new.new_question(f"trial/{kind.replace(' ', '-').lower()}-{number}", "", kind)
+    assert len(read_source(path).questions) == 2 * len(new.EXAMPLES)
+    with pytest.raises(SystemExit, match="already has a question trial/words-9"):
+        new.new_question("trial/words-9", "", "words")
 
 
 #: Docstrings name equations by number, since a terminal shows no links. They mean these.
@@ -231,14 +231,25 @@ def test_docstrings_name_equations_by_the_numbers_of_the_book():
         for page in re.findall(r"file: (chapters/\S+)", (REPOSITORY / "_toc.yml").read_text("utf8"))
     ]
     notes = {
-        name: str(getattr(orientation, name).__doc__).partition("In the book: ")[2]
+        name: re.findall(
+            r"\(\d+\.\d+\)",
+            str(getattr(orientation, name).__doc__).partition("In the book: ")[2],
+        )
         for name in orientation.__all__
     }
-    assert EQUATIONS == {
-        name: [labels[int(k) - 1][int(n) - 1] for k, n in re.findall(r"\((\d+)\.(\d+)\)", note)]
-        for name, note in notes.items()
-        if note
-    }, "EQUATIONS in this file lists the labels of the equations that each docstring names"
+    assert {name: numbers for name, numbers in notes.items() if numbers} == {
+        name: [
+            f"({k}.{n})"
+            for label in wanted
+            for k, own in enumerate(labels, 1)
+            for n, other in enumerate(own, 1)
+            if other == label
+        ]
+        for name, wanted in EQUATIONS.items()
+    }, (
+        "on the right, the numbers that the docstrings should name, by the labels in EQUATIONS of "
+        "this file; a new chapter or equation moves those after it"
+    )
 
 
 def test_the_page_quotes_the_reply_to_the_numbers_as_they_stand(tmp_path, monkeypatch):
