@@ -49,19 +49,6 @@ ARGUMENTS = {
                 help="names of the notebooks to release (default: all)",
             ),
             SOURCES,
-            argument(
-                "--exercises",
-                type=Path,
-                help="folder for the exercise notebooks (default: the one in course.toml)",
-            ),
-            argument(
-                "--sealed",
-                type=Path,
-                help="folder for the sealed questions (default: the one in course.toml)",
-            ),
-            argument(
-                "--no-archive", action="store_true", help="do not build the archive for students"
-            ),
         ],
     ),
     "publish": (
@@ -127,17 +114,11 @@ ARGUMENTS = {
 }
 
 
-def _course(
-    sources: Path | None = None, exercises: Path | None = None, sealed: Path | None = None
-) -> Course:
+def _course(sources: Path | None = None) -> Course:
     from .course import find_course
 
     course = find_course()
-    return course._replace(
-        sources=sources.resolve() if sources else course.sources,
-        exercises=exercises.resolve() if exercises else course.exercises,
-        sealed=sealed.resolve() if sealed else course.sealed,
-    )
+    return course._replace(sources=sources.resolve()) if sources else course
 
 
 def new(course: str) -> None:
@@ -146,22 +127,15 @@ def new(course: str) -> None:
     print(*make(course), sep="\n")
 
 
-def release(
-    only: Sequence[str],
-    no_archive: bool,
-    sources: Path | None,
-    exercises: Path | None,
-    sealed: Path | None,
-) -> None:
+def release(only: Sequence[str], sources: Path | None) -> None:
     from .closed import counted
     from .packing import archive
     from .release import release as make
 
-    course = _course(sources, exercises, sealed)
+    course = _course(sources)
     names = make(course, only)
     print(f"{len(names)} {'notebook' if len(names) == 1 else 'notebooks'} released.")
-    if not no_archive:
-        print(f"For students: {archive(course)}")
+    print(f"For students: {archive(course)}")
     print(*counted(course, names), sep="\n")
 
 
