@@ -203,82 +203,118 @@ def read_source(
         cell.source = cell.source.replace("\r\n", "\n")
         if cell.cell_type == "code":
             _demand_marks(cell.source, f"{path.name}, cell {number}")
-    answers: dict[str, object] = {}
-    questions: dict[str, author.AuthoredQuestion] = {}
-    figures: dict[int, Drawing] = {}
-    rules: dict[str, Rule] = {}
-    given: dict[str, dict[str, Any]] = {}
-    texts, identities = _texts_of_variants(notebook), list[str]()
-    by_name = gives_by_name(path.parent)
+    recorder = _Recorder(path, notebook, variant, edition, only, pictures)
+    figures = _figures_of_run(path, notebook, recorder)
+    variables = checked_names(notebook)
+    _demand_matched(path, recorder, variables)
+    for name, question in recorder.questions.items():
+        question.variable = variables[name]
+    if only is None and not variant:
+        _demand_hidden(path.name, notebook, variables)
+        _demand_pi(path.name, notebook)
+        _demand_shown(path.name, notebook, recorder)
+    return Source(
+        path.stem, notebook, recorder.questions, figures, recorder.rules, bool(recorder.identities)
+    )
+
+
+class _Recorder:
+    """A recorder of everything that the cells of a source draw, check and ask while they run.
+
+    Parameters
+    ----------
+    notebook : NotebookNode
+    path, variant, edition, only, pictures
+        As for `read_source`.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        notebook: NotebookNode,
+        variant: int,
+        edition: str,
+        only: Collection[str] | None,
+        pictures: bool | None,
+    ) -> None:
+        self.path, self.variant, self.edition, self.only = path, variant, edition, only
+        self.with_pictures = only is None if pictures is None else pictures
+        self.by_name = gives_by_name(path.parent)
+        self.texts = _texts_of_variants(notebook)
+        self.answers: dict[str, object] = {}
+        self.questions: dict[str, author.AuthoredQuestion] = {}
+        self.rules: dict[str, Rule] = {}
+        self.given: dict[str, dict[str, Any]] = {}
+        self.identities: list[str] = []
 
     def draw(
+        self,
         name: str,
         count: int = COUNT,
         where: Callable[..., object] | None = None,
         picture: Callable[..., Drawing] | None = None,
         **pools: Pool,
     ) -> Given:
-        rules[name] = Rule(name, count, pools, where, picture).without_what_is_ruled_out()
-        count = rules[name].count
-        given[name] = rules[name].parameters(variant if variant < count else 0, edition)
-        return Given(shown(texts[name], written(given[name])), given[name])
+        """Draw the parameters of this variant; a question with fewer variants has its first."""
+        rule = Rule(name, count, pools, where, picture).without_what_is_ruled_out()
+        number = self.variant if self.variant < rule.count else 0
+        given = rule.parameters(number, self.edition)
+        self.rules[name], self.given[name] = rule, given
+        return Given(shown(self.texts[name], written(given)), given)
 
-    def record_question(name: str, **about: Any) -> None:
-        if name not in answers:
+    def ask(self, name: str, **about: Any) -> None:
+        """Record a question, if it is wanted and has this variant."""
+        if name not in self.answers:
             raise author.AuthorError(
                 f"{name}: call `question` below its check"
-                + (f"; checked so far: {', '.join(answers)}." if answers else ".")
+                + (f"; checked so far: {', '.join(self.answers)}." if self.answers else ".")
             )
-        if name in questions:
+        if name in self.questions:
             raise author.AuthorError(f"{name}: two questions have this name.")
-        if name.partition("/")[0] != path.stem:
+        if name.partition("/")[0] != self.path.stem:
             raise author.AuthorError(
-                f"{name}: name each question of this notebook '{path.stem}/...'."
+                f"{name}: name each question of this notebook '{self.path.stem}/...'."
             )
-        if only is not None and name not in only:
+        if self.only is not None and name not in self.only:
             return
         if "kind" not in about:
             raise author.AuthorError(f"{name}: give its kind, for example kind='expression'.")
-        if name in rules and about.get("fixed"):
+        if name in self.rules and about.get("fixed"):
             raise author.AuthorError(f"{name}: you draw variants for it, so leave out `fixed`.")
-        if name not in rules:
-            if not variant:
-                questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
-        elif variant < rules[name].count:
-            own = variant_drawn(
-                given[name], texts[name], variant, rules[name].count, edition=edition
-            )
-            _demand_few_digits(name, own.shown)
-            if by_name:
-                drawn = (
-                    rules[name].parameters(number, edition) for number in range(rules[name].count)
-                )
-                own = replace(
-                    own,
-                    names=tuple(
-                        names_of_variants(variant_drawn(one, texts[name]) for one in drawn)
-                    ),
-                )
-            picture = rules[name].picture
-            if picture and (only is None if pictures is None else pictures):
-                drawing = picture(given[name])
-                own = replace(own, picture=packed(drawing.picture(), drawing.alt))
-            questions[name] = author.question(
-                name, about.pop("kind"), answers[name], variant=own, **about
+        if self.variant < (self.rules[name].count if name in self.rules else 1):
+            own = self._own_variant(name) if name in self.rules else None
+            self.questions[name] = author.question(
+                name, about.pop("kind"), self.answers[name], variant=own, **about
             )
 
+    def _own_variant(self, name: str) -> Variant:
+        rule, text, given = self.rules[name], self.texts[name], self.given[name]
+        own = variant_drawn(given, text, self.variant, rule.count, self.edition)
+        _demand_few_digits(name, own.shown)
+        if self.by_name:
+            drawn = (rule.parameters(number, self.edition) for number in range(rule.count))
+            names = names_of_variants(variant_drawn(one, text) for one in drawn)
+            own = replace(own, names=tuple(names))
+        if rule.picture and self.with_pictures:
+            drawing = rule.picture(given)
+            own = replace(own, picture=packed(drawing.picture(), drawing.alt))
+        return own
+
+
+def _figures_of_run(path: Path, notebook: NotebookNode, recorder: _Recorder) -> dict[int, Drawing]:
+    """Run the cells with the recorder's functions; return the figures by the numbers of cells."""
     namespace = {
         "__name__": "__main__",
-        "question": record_question,
-        "draw": draw,
+        "question": recorder.ask,
+        "draw": recorder.draw,
         "drawing": Drawing,
     }
-    said = {
-        "check": answers.__setitem__,
-        "student": lambda identity="": identities.append(identity),
-    }
+    figures: dict[int, Drawing] = {}
     with contextlib.ExitStack() as replaced:
-        for name, record in said.items():
+        for name, record in (
+            ("check", recorder.answers.__setitem__),
+            ("student", lambda identity="": recorder.identities.append(identity)),
+        ):
             replaced.enter_context(_replaced(coursework, name, record))
         for number, cell in enumerate(notebook.cells):
             if cell.cell_type != "code":
@@ -293,24 +329,22 @@ def read_source(
                 ) from error
             if "figure" in cell.metadata.get("tags", []):
                 figures[number] = value
-    unasked = sorted((set(answers) if not variant and only is None else set()) - set(questions))
+    return figures
+
+
+def _demand_matched(path: Path, recorder: _Recorder, variables: Mapping[str, str]) -> None:
+    """Reject checks without a question, and answers of the same name."""
+    everything = not recorder.variant and recorder.only is None
+    unasked = sorted(set(recorder.answers) - set(recorder.questions)) if everything else []
     if unasked:
         raise author.AuthorError(
             f"{path.name}: these checks have no question: {', '.join(unasked)}."
         )
-    variables = checked_names(notebook)
     names = list(variables.values())
     if twice := sorted({name for name in names if names.count(name) > 1}):
         raise author.AuthorError(
             f"{path.name}: two answers have the same name, {', '.join(twice)}. Give each its own."
         )
-    for name, question in questions.items():
-        question.variable = variables[name]
-    if only is None and not variant:
-        _demand_hidden(path.name, notebook, variables)
-        _demand_pi(path.name, notebook)
-        _demand_shown(path.name, notebook, rules, given, texts, questions)
-    return Source(path.stem, notebook, questions, figures, rules, bool(identities))
 
 
 def _demand_marks(text: str, where: str) -> None:
@@ -387,35 +421,29 @@ def _demand_hidden(file: str, notebook: NotebookNode, variables: Mapping[str, st
                 )
 
 
-def _demand_shown(
-    file: str,
-    notebook: NotebookNode,
-    rules: Mapping[str, Rule],
-    given: Mapping[str, Mapping[str, object]],
-    texts: Mapping[str, str],
-    questions: Mapping[str, author.AuthoredQuestion],
-) -> None:
+def _demand_shown(file: str, notebook: NotebookNode, recorder: _Recorder) -> None:
     """Reject variants without a question, and draws that do not match what students see."""
     codes = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
     code = "\n".join(VARIANTS.sub("", HIDDEN.sub("", SOLUTION.sub("", text))) for text in codes)
-    for name in rules:
-        if name not in questions:
+    for name, rule in recorder.rules.items():
+        if name not in recorder.questions:
             raise author.AuthorError(
                 f"{name}: {file} draws variants for it, but asks no such question; it asks "
-                f"{', '.join(questions)}."
+                f"{', '.join(recorder.questions)}."
             )
-        braces = dict.fromkeys(re.findall(r"\{\{(\w+)\}\}", texts[name]))
-        unknown = [one for one in braces if one not in (*given[name], "picture")]
-        unshown = [one for one in given[name] if one not in braces]
+        given = recorder.given[name]
+        braces = dict.fromkeys(re.findall(r"\{\{(\w+)\}\}", recorder.texts[name]))
+        unknown = [one for one in braces if one not in (*given, "picture")]
+        unshown = [one for one in given if one not in braces]
         # Nested braces may be TeX, but if a parameter is shown nowhere, they are a typo.
         if unknown and unshown:
             raise author.AuthorError(
                 f"{name}: its text shows {{{{{unknown[0]}}}}}, which you have not drawn; you have "
-                f"drawn {', '.join(given[name])}."
+                f"drawn {', '.join(given)}."
             )
         unseen = [one for one in unshown if not re.search(rf"\b{one}\b", code)]
         # With `where`, related parameters may show its value.
-        if unseen and not rules[name].picture and not rules[name].where:
+        if unseen and not rule.picture and not rule.where:
             raise author.AuthorError(
                 f"{name}: you draw {unseen[0]}, but students would not see it. Show it in the "
                 f"text as {{{{{unseen[0]}}}}}, in one of their cells, or in a picture."
