@@ -22,8 +22,6 @@ from coursework.grading.judging.marking import CUT_SHORT, mark, questions_of
 from coursework.grading.record import Answer, Mark
 from coursework.grading.reporting import reports
 
-pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
-
 
 @pytest.fixture(scope="module")
 def solutions(tmp_path_factory):
