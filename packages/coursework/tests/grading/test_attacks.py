@@ -165,7 +165,8 @@ def suffer(answer):
                 for job in (surroundings.job(attack), neighbour(number))
             ]
             results |= {
-                result["id"]: result for result in run_notebooks(jobs, workers=2, limits=limits)
+                result["id"]: result
+                for result in run_notebooks(jobs, workers=1 if waits else 2, limits=limits)
             }
         left = [str(child) for child in psutil.Process().children(recursive=True)]
         answer.send(
