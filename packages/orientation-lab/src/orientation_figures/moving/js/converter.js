@@ -33,7 +33,7 @@ export const sequencesOf = (side, programs) => programs[side.program]?.sequences
 
 // Return the orientation that the numbers in a text describe, and what was corrected; throw if they describe none.
 export function read(side, text) {
-  const numbers = (decimalPoints(text).replace(MINUS, '-').replace(APART, '$1-').match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
+  const numbers = (decimalPoints(text).replace(MINUS, '-').replace(APART, (_, before) => `${before}-`).match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
   const commas = numbers.length > wanted && /\d,\d/.test(text) ? ' Write 0.5 for one half: a comma separates two numbers.' : '';
   if (numbers.length !== wanted) throw new Error(`There ${numbers.length === 1 ? 'is' : 'are'} ${several(numbers.length, 'number')} here, but ${side.form} needs ${wanted}.${commas}`);
   let dcm = null, said = '';
