@@ -55,44 +55,6 @@ def test_weight(front_end):
     assert weights["shared"] + weights["workbench"] < HEAVIEST, weights
 
 
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("theme", THEMES)
-@pytest.mark.parametrize("viewport", [WIDE, NARROW], ids=["wide", "narrow"])
-@pytest.mark.parametrize("kind", KINDS)
-def test_figure_on_the_page(open_figure, kind, viewport, theme):
-    page = open_figure(kind, theme, viewport)
-    assert page.evaluate("window.shift") < 0.001, "the page moves when the figure wakes"
-    assert page.evaluate(SIDEWAYS) <= 0
-    assert violations(page) == []
-    boxes = ("still", "live .sheet")
-    views = [
-        page.get_attribute(f".moving .{box}{' svg' if box == 'still' else ''}", "viewBox")
-        for box in boxes
-    ]
-    assert views[0] == views[1], "still and figure differ in size"
-    assert not page.is_visible(".moving .still")
-
-
-@pytest.mark.sampled(1)
-@pytest.mark.parametrize("kind", KINDS)
-def test_nothing_moves_while_the_script_is_on_its_way(open_figure, kind):
-    """The still stands where the drawing will stand, in the room that the figure will need."""
-    for viewport in (WIDE, NARROW):
-        asleep = open_figure(kind, viewport=viewport, java_script_enabled=True)
-        box = asleep.locator(".sheet").first.bounding_box()
-        after = asleep.locator("#after").bounding_box()
-        asleep.evaluate(
-            "() => { document.querySelector('.live').remove(); delete "
-            "document.querySelector('.moving').dataset.ready; }"
-        )
-        still = asleep.locator(".still svg").first.bounding_box()
-        assert [still[side] for side in ("x", "y", "width", "height")] == pytest.approx(
-            [box[side] for side in ("x", "y", "width", "height")], abs=1
-        )
-        # Fonts differ between pages: what is kept free is right to a line of text.
-        assert asleep.locator("#after").bounding_box()["y"] == pytest.approx(after["y"], abs=60)
-
-
 # Each shape by its colour and the box that it fills. Labels are pictures of letters, without a
 # class; what is there for the hand or tells the hand's place alone, and the lines behind a graph,
 # stand in one of the pictures only.
@@ -121,16 +83,40 @@ def without_twin(shapes, others):
     ]
 
 
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("kind", KINDS)
-def test_both_languages_draw_the_same_picture(open_figure, kind):
-    """The still comes from Python, the figure from the browser:
-    every shape lies where its twin does.
+# How many pictures are asked for in twenty frames.
+ASKED = """async () => {
+  const frame = window.requestAnimationFrame;
+  let asked = 0;
+  window.requestAnimationFrame = (work) => { asked += 1; return frame(work); };
+  for (let k = 0; k < 20; k += 1) await new Promise((done) => frame(done));
+  window.requestAnimationFrame = frame;
+  return asked;
+}"""
 
-    The first picture of each: what stands beside it grows with time in
-    the page, and is whole on paper.
-    """
-    page = open_figure(kind)
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("theme", THEMES)
+@pytest.mark.parametrize("viewport", [WIDE, NARROW], ids=["wide", "narrow"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_figure_on_the_page(open_figure, kind, viewport, theme):
+    page = open_figure(kind, theme, viewport)
+    assert page.evaluate("window.shift") < 0.001, "the page moves when the figure wakes"
+    assert page.evaluate(SIDEWAYS) <= 0
+    assert violations(page) == []
+    boxes = ("still", "live .sheet")
+    views = [
+        page.get_attribute(f".moving .{box}{' svg' if box == 'still' else ''}", "viewBox")
+        for box in boxes
+    ]
+    assert views[0] == views[1], "still and figure differ in size"
+    assert not page.is_visible(".moving .still")
+    # Once it is drawn, a figure asks for no further picture.
+    assert page.evaluate(ASKED) == 0
+    page.emulate_media(media="print")
+    assert page.locator(".still svg").first.is_visible() and not page.is_visible(".live")
+    page.emulate_media(media="screen")
+    # The still comes from Python, the figure from the browser: every shape lies where its twin
+    # does. What stands beside the first picture grows with time in the page, and is whole on paper.
     (still, *_), (live, *_) = (page.evaluate(SHAPES, box) for box in (".still svg", ".live .sheet"))
     assert still
     assert without_twin(still, live) == []
@@ -139,13 +125,30 @@ def test_both_languages_draw_the_same_picture(open_figure, kind):
 
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("kind", KINDS)
-def test_without_scripts_and_on_paper_there_is_the_still(open_figure, kind):
+def test_nothing_moves_while_the_script_is_on_its_way(open_figure, kind):
+    """The still stands where the drawing will stand, in the room that the figure will need."""
+    for viewport in (WIDE, NARROW):
+        asleep = open_figure(kind, viewport=viewport, java_script_enabled=True)
+        box = asleep.locator(".sheet").first.bounding_box()
+        after = asleep.locator("#after").bounding_box()
+        asleep.evaluate(
+            "() => { document.querySelector('.live').remove(); delete "
+            "document.querySelector('.moving').dataset.ready; }"
+        )
+        still = asleep.locator(".still svg").first.bounding_box()
+        assert [still[side] for side in ("x", "y", "width", "height")] == pytest.approx(
+            [box[side] for side in ("x", "y", "width", "height")], abs=1
+        )
+        # Fonts differ between pages: what is kept free is right to a line of text.
+        assert asleep.locator("#after").bounding_box()["y"] == pytest.approx(after["y"], abs=60)
+
+
+@pytest.mark.sampled(1)
+@pytest.mark.parametrize("kind", KINDS)
+def test_without_scripts_there_is_the_still(open_figure, kind):
     page = open_figure(kind, java_script_enabled=False)
     assert page.locator(".still svg").first.is_visible()
     assert len(page.locator(".still svg").first.get_attribute("aria-label").split()) > 10
-    page = open_figure(kind)
-    page.emulate_media(media="print")
-    assert page.locator(".still svg").first.is_visible() and not page.is_visible(".live")
 
 
 def test_all_figures_on_one_page(open_figure):
@@ -367,10 +370,7 @@ def test_every_number_of_the_triad_says_what_it_means(open_figure):
     page.mouse.move(1, 1)
     settle(page)
     assert drawing(page) == plain
-
-
-def test_numbers_are_reached_by_arrow_keys_and_read_aloud(open_figure):
-    page = open_figure("triad")
+    # By the arrow keys, and read aloud.
     first = page.locator(
         '[aria-label="Direction cosine matrix of A with respect to N"] button'
     ).first
@@ -388,8 +388,8 @@ def test_numbers_are_reached_by_arrow_keys_and_read_aloud(open_figure):
 
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("sequence", module.SEQUENCES)
-def test_gimbal_shows_the_matrix_of_the_module(open_figure, sequence):
-    page = open_figure("gimbal")
+def test_gimbal_shows_the_matrix_of_the_module_and_its_lock(open_figure, sequence):
+    page = open_figure("gimbal", reduced_motion="reduce")  # so that the buttons jump to the end
     page.get_by_label("Sequence").select_option(sequence)
     for angles in ((30, 40, -70), (-160, 90, 25), (10, 0, 100)):
         for name, angle in zip(("psi", "theta", "phi"), angles):
@@ -402,14 +402,8 @@ def test_gimbal_shows_the_matrix_of_the_module(open_figure, sequence):
         assert float(page.get_attribute("[role=meter]", "aria-valuenow")) == pytest.approx(
             margin, abs=0.06
         )
-
-
-@pytest.mark.sampled(1)
-@pytest.mark.parametrize("sequence", module.SEQUENCES)
-def test_two_sliders_do_the_same_thing_at_lock(open_figure, sequence):
-    page = open_figure("gimbal", reduced_motion="reduce")  # so that the buttons jump to the end
+    # At lock two sliders do the same.
     matrix = "Direction cosine matrix of D with respect to A"
-    page.get_by_label("Sequence").select_option(sequence)
     type_number(page, "theta in degrees", -50)
     assert "three ways" in words(page)
     assert page.locator(".slider.same").count() == 0
@@ -522,21 +516,6 @@ def test_a_drag_draws_one_picture_for_each_frame_and_writes_only_what_changes(op
     )
     assert 0 < max(count["written"] for count in counts) < MOST_WRITTEN
     assert np.median([count["made"] for count in counts]) == 0, "elements are made anew"
-
-
-@pytest.mark.sampled(1)
-@pytest.mark.parametrize("kind", KINDS)
-def test_nothing_moves_unasked(open_figure, kind):
-    """Once it is drawn, a figure asks for no further picture."""
-    page = open_figure(kind)
-    asked = page.evaluate("""async () => {
-      const frame = window.requestAnimationFrame;
-      let asked = 0;
-      window.requestAnimationFrame = (work) => { asked += 1; return frame(work); };
-      for (let k = 0; k < 20; k += 1) await new Promise((done) => frame(done));
-      return asked;
-    }""")
-    assert asked == 0
 
 
 def test_reduced_motion_is_respected(open_figure):

@@ -401,7 +401,7 @@ def test_stills_of_extreme_states_can_be_drawn():
         assert "<svg" in TriadFigure(axis=axis, angle=angle).still()
     for matrix in (np.zeros((3, 3)), np.diag((1, 1, -1)), np.eye(3), np.ones((3, 3))):
         assert "<svg" in NineNumbersFigure(matrix=matrix).still()
-    for sequence in module.SEQUENCES:
+    for sequence in ("zxy", "zxz"):
         for middle in (0, math.pi / 2, math.pi):
             assert "<svg" in GimbalFigure(angles=(0, middle, 0), sequence=sequence).still()
 

@@ -8,6 +8,7 @@ second, one m/s² or one microtesla is.
 import io
 import json
 import zipfile
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,7 @@ class Form(NamedTuple):
     called: str = "recording"
 
 
+@cache
 def recording():
     return simulate(SEED, poses=6)
 

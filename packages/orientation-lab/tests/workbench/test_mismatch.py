@@ -88,7 +88,7 @@ def test_mixtures_of_up_to_three_faults():
     elsewhere what is first costs no more.
     """
     generator, orientations = random.Random(500), np.random.default_rng(500)
-    first_place, count = 0, 60
+    first_place, count = 0, 30
     for _ in range(count):
         declared = known(generator), known(generator)
         truth = random_chain(generator, declared, generator.randint(1, 3))
@@ -119,7 +119,7 @@ def test_the_pose_that_is_asked_for_decides(start):
     """One more pose decides, turned about as far as was asked; where an entry happens to print as
     zero again, as one in some hundred does, the next.
     """
-    generator, asked_twice, count = random.Random(700), 0, 15
+    generator, asked_twice, count = random.Random(700), 0, 7
     for _ in range(count):
         axis = generator.choice("xyz")
         angle = generator.uniform(0.2, 1.2) if start == "planar" else 0.0
