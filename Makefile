@@ -30,7 +30,7 @@ help:
 	@echo "make test-rest  run the tests that make test leaves out: the whole book on paper, other browsers, clusters"
 	@echo "make notebooks  run every notebook and store its outputs"
 	@echo "make release    build the exercises from the notebooks with solutions, and test them (ONLY=belt-trick builds one)"
-	@echo "make anywhere   compare all numbers with those of other processors and of WebAssembly"
+	@echo "make anywhere   compare all numbers with those of other processors"
 	@echo "make oldest     test the module with the oldest versions of its dependencies that it allows"
 	@echo "make mutants    make thousands of small changes to the mathematics, and list those that no test notices (takes hours)"
 	@echo "make programs   run the newest versions of the programs on the convention card, and compare their answers (downloads gigabytes)"

@@ -2,8 +2,8 @@
 
 ``python -m tools.anywhere`` runs every cell, every release and every doctest as other processors
 would: with each kernel of OpenBLAS, without the instructions that NumPy would not have there, on
-one thread and on many. It also runs the notebooks that need only SymPy in WebAssembly, in the
-Python of browsers. A table shows which numbers changed and by how much.
+one thread and on many. A table shows which numbers changed and by how much. The Python of browsers
+is left to ``tests/pages/test_live.py``, which compares each page's results with the stored ones.
 """
 
 import argparse
@@ -11,10 +11,8 @@ import ctypes
 import json
 import math
 import os
-import shutil
 import subprocess
 import sys
-import tempfile
 from collections import defaultdict
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
@@ -22,22 +20,12 @@ from pathlib import Path
 import nbformat
 from nbclient import NotebookClient
 
-from coursework import authoring
 from coursework.authoring.course import find_course
 from coursework.authoring.source import notebooks_in
 from notebook_pages.execution import STORED
-from notebook_pages.live.cells import (
-    ALONE,
-    kinds_of_cells,
-    outputs_of_messages,
-    stored_outputs,
-    write_python,
-)
-from notebook_pages.live.runtime import COMPILER, FETCHED, PYODIDE, compile_wheels
-from notebook_pages.moves import moves, moves_of_outputs
+from notebook_pages.moves import moves_of_outputs
 from notebook_pages.notebooks import all_notebooks
-from notebook_pages.packing import build_wheels
-from notebook_pages.paths import NODE, PACKAGES, REPOSITORY
+from notebook_pages.paths import REPOSITORY
 from notebook_pages.warm_kernels import WarmAsyncKernelManager
 
 from .released import digests_of
@@ -62,7 +50,6 @@ DOCTESTS = (
     "packages/orientation-lab/src/orientation_recordings",
     "packages/coursework/src/coursework",
 )
-BROWSERS = "WebAssembly"
 
 
 # --- on one machine -----------------------------------------------------------------------------
@@ -179,105 +166,6 @@ def sources(only):
     ]
 
 
-# --- in the Python of browsers ------------------------------------------------------------------
-
-# Run each notebook as the page runs it, with the program by which the build determines the needs of
-# each cell. Then seal the sources that need no NumPy. The library that reads notebooks is missing
-# there, so use JSON.
-IN_A_BROWSER = """
-import glob, io, json, shutil, sys, types, zipfile
-for wheel in glob.glob("/wheels/*.whl"):
-    zipfile.ZipFile(wheel).extractall("/packages")
-sys.path.insert(0, "/packages")
-codes = json.load(open("/wheels/codes.json"))
-program = compile(open("/wheels/alone.py").read(), "alone", "exec")
-plain, told = sys.__stdout__, {}
-for name in codes["cells"]:
-    sys.argv = ["-c", "/wheels/python", *codes["packages"]]
-    sys.stdin, sys.__stdout__ = io.StringIO(json.dumps(codes["cells"][name])), io.StringIO()
-    exec(program, {"__name__": "alone"})
-    told[name] = json.loads(sys.__stdout__.getvalue())
-sys.__stdout__ = plain
-sys.meta_path[:] = [finder for finder in sys.meta_path if type(finder).__name__ != "Missing"]
-
-class Node(dict):
-    __getattr__ = dict.get
-    __setattr__ = dict.__setitem__
-
-sys.modules["nbformat"] = types.ModuleType("nbformat")
-sys.modules["nbformat"].read = lambda path, as_version: json.load(open(path), object_hook=Node)
-shutil.copytree("/wheels/authoring", "/packages/coursework/authoring")
-sys.path.append("/wheels")
-from released import digests_of
-released = {}
-for path in sorted(glob.glob("/wheels/sources/*.ipynb")):
-    try:
-        released |= digests_of(path)
-    except (ValueError, ModuleNotFoundError) as error:
-        if not any(name in str(error) for name in ("numpy", "matplotlib")):
-            raise
-json.dump({"cells": told, "released": released}, open("/wheels/told.json", "w"))
-"""
-
-
-def numbers_in_a_browser(only):
-    """Return the moves of the cells, and the digests of the sources, that need only SymPy."""
-    kinds, stored = kinds_of_cells(), {}
-    for path in notebooks(only):
-        name = str(path.relative_to(REPOSITORY).with_suffix(""))
-        if any(not kind["needs"] for kind in kinds[name]):
-            cells = nbformat.read(path, as_version=4).cells
-            stored[name] = [cell for cell in cells if cell.cell_type == "code"]
-    codes = {name: [cell.source for cell in cells] for name, cells in stored.items()}
-    with tempfile.TemporaryDirectory() as folder:
-        folder = Path(folder)
-        for wheel in (
-            *build_wheels(folder / "built"),
-            *compile_wheels(sorted(FETCHED.glob("*.whl"))),
-        ):
-            shutil.copy(wheel, folder)
-        write_python(folder / "python")
-        shutil.copytree(Path(authoring.__file__).parent, folder / "authoring")
-        shutil.copy(Path(__file__).with_name("released.py"), folder)
-        (folder / "sources").mkdir()
-        for path in sources(only):
-            # Serialising the notebook joins the source of each cell to one text.
-            text = json.dumps(nbformat.read(path, as_version=4))
-            (folder / "sources" / path.name).write_text(text, "utf8")
-        (folder / "codes.json").write_text(
-            json.dumps({"cells": codes, "packages": list(PACKAGES)}), "utf8"
-        )
-        (folder / "alone.py").write_text(ALONE, "utf8")
-        (folder / "program.py").write_text(IN_A_BROWSER, "utf8")
-        subprocess.run(
-            [NODE, COMPILER[0], PYODIDE / "pyodide.mjs", folder / "program.py", folder], check=True
-        )
-        results = json.loads((folder / "told.json").read_text("utf8"))
-    moved = [
-        move
-        for name, cells in stored.items()
-        for number, (cell, kind, report) in enumerate(
-            zip(cells, kinds[name], results["cells"][name], strict=True)
-        )
-        if not kind["needs"] and cell.execution_count is not None
-        for move in moves_in_a_browser(f"{name}, cell {number}", cell, report)
-    ]
-    return {"kernel": "", "cells": moved, "doctests": [], "released": results["released"]}
-
-
-def moves_in_a_browser(place, cell, report):
-    before, after = stored_outputs(cell), outputs_of_messages(report["messages"])
-    if report["outcome"]["status"] != "ok" or [form for form, _ in before] != [
-        form for form, _ in after
-    ]:
-        return [(place, str(report["outcome"])[-300:], math.inf)]
-    return [
-        move
-        for (_, text), (_, now) in zip(before, after)
-        for move in in_words(place, moves(text, now))
-    ]
-
-
 # --- on all of them -----------------------------------------------------------------------------
 
 
@@ -332,13 +220,9 @@ def main():
         "| releases that differ |"
     )
     print("| --- | ---: | --- | ---: | ---: |")
-    for name, environment in [*possible.items(), (BROWSERS, None)]:
-        results = (
-            numbers_in_a_browser(options.only)
-            if environment is None
-            else numbers_of(environment, options.only)
-        )
-        requested = (environment or {}).get("OPENBLAS_CORETYPE")
+    for name, environment in possible.items():
+        results = numbers_of(environment, options.only)
+        requested = environment.get("OPENBLAS_CORETYPE")
         if requested and results["kernel"] not in ("", requested, CALLED.get(requested)):
             faults.append(f"{name}: OpenBLAS has chosen {results['kernel']}")
         first = first or results["released"]

@@ -1,7 +1,4 @@
-"""The data that a notebook's release depends on, as short digests.
-
-It runs here and in the Python of browsers.
-"""
+"""The data that a notebook's release depends on, as short digests."""
 
 import contextlib
 import io
