@@ -214,7 +214,6 @@ def test_no_file_of_an_exam_edition_holds_a_solution(tmp_path):
         *(
             site / name
             for name in (
-                "llms.txt",
                 "_static/search.js",
                 "_static/search-words.js",
                 "offline.json",

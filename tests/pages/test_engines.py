@@ -7,7 +7,7 @@ from test_servers import SIZE
 from test_site import stand_as_katex_sets_them
 
 from notebook_pages.execution import STORED
-from notebook_pages.page import in_short
+from notebook_pages.lighten import in_short
 
 RUN_ALL = "() => document.querySelector('button.run-page').click()"
 IS_DONE = (

@@ -14,7 +14,7 @@ from test_website import build, chapter
 
 import orientation
 from notebook_pages.finish import pages_of
-from notebook_pages.paths import LICENCES, pages
+from notebook_pages.paths import LICENCES
 from notebook_pages.publish import LONGEST
 
 SETTINGS = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))
@@ -55,11 +55,6 @@ def test_each_page_describes_itself():
 def test_files_for_machines():
     assert (HTML / ".nojekyll").is_file()
     assert "Allow: /" in (HTML / "robots.txt").read_text("utf8")
-    outline = (HTML / "llms.txt").read_text("utf8")
-    for page in pages()[1:]:
-        description = meta(head(HTML / f"{page}.html"), "description")
-        assert f"{page}.html): {description}" in outline, f"llms.txt lacks {page}"
-    assert all((HTML / address).is_file() for address in re.findall(r"\]\(([^)]*)\)", outline))
     missing = (HTML / "404.html").read_text("utf8")
     assert 'href="/index.html"' in missing and "_static" not in missing, (
         "it stands in for an address in any folder"

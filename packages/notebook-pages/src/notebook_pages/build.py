@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import subprocess
 import sys
 import time
 import traceback
@@ -101,13 +100,7 @@ def main():
         "Nothing more is printed until the pages are done ...",
         flush=True,
     )
-    # Byte-compile the wheels for browsers while the pages are being read.
-    compiling = [sys.executable, "-c", "from notebook_pages import lite; lite.compile_ahead()"]
-    ahead = None if lite.is_compiled() else subprocess.Popen(compiling)
-    code = make_pages()
-    if ahead:
-        ahead.wait()
-    if code:
+    if make_pages():
         # Sphinx warns about a page only when it reads it. Without this, a second build would find
         # nothing to do and would report success for the same faulty book.
         forget_site()

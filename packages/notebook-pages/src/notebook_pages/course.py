@@ -59,8 +59,10 @@ def publish(parts, workshop, site):
     write_book(parts, workshop)
     environment = os.environ | {
         "NOTEBOOK_PAGES_FETCHED": str(fetched),
-        "PYTHONPATH": os.pathsep.join(_places(workshop / "packages"))
-    }  # fmt: skip
+        "PYTHONPATH": os.pathsep.join(
+            filter(None, [str(workshop / "packages"), os.environ.get("PYTHONPATH")])
+        ),
+    }
     done = subprocess.run(
         [sys.executable, "-m", "notebook_pages.build"], cwd=workshop, env=environment
     )
@@ -69,11 +71,6 @@ def publish(parts, workshop, site):
     if site.exists():
         shutil.rmtree(site)
     shutil.copytree(workshop / "_build" / "html", site)
-
-
-def _places(packages):
-    before = os.environ.get("PYTHONPATH")
-    return [str(packages), *([before] if before else [])]
 
 
 def write_book(parts, workshop):

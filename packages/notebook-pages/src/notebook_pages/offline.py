@@ -5,9 +5,9 @@ Its bytes depend only on its content: the files are in order and have one date.
 
 import io
 import re
-import zipfile
 
-from .paths import LICENCES_SAID, WEBSITE, moment_of_sources
+from .packing import write_zip
+from .paths import LICENCES_SAID, WEBSITE
 
 SERVER = WEBSITE / "serve.py"
 # A page from a disk preloads nothing, and browsers complain about the hints.
@@ -43,12 +43,6 @@ def pack(files, name, title):
         for path, content in files.items()
     }
     files = {"README.txt": readme.encode(), "serve.py": SERVER.read_bytes(), **files}
-    date = moment_of_sources().timetuple()[:6]
     packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        for path in sorted(files):
-            entry = zipfile.ZipInfo(f"{name}/{path}", date)
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.create_system, entry.external_attr = 3, 0o644 << 16
-            archive.writestr(entry, files[path])
+    write_zip(packed, {f"{name}/{path}": content for path, content in files.items()})
     return packed.getvalue()

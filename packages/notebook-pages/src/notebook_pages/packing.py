@@ -16,6 +16,7 @@ from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from functools import cache, cached_property
 from pathlib import Path
+from typing import IO
 
 from .paths import REGISTERED, REPOSITORY
 
@@ -198,13 +199,13 @@ class Ready:
         return Path(shutil.copy(self.file, folder))
 
 
-def write_zip(target: Path, files: Mapping[str, str | bytes]) -> None:
+def write_zip(target: Path | IO[bytes], files: Mapping[str, str | bytes]) -> None:
     """Write contents by name into a reproducible zip."""
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as box:
         for name in sorted(files):
             entry = zipfile.ZipInfo(name, TIME)
             entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = 0o644 << 16
+            entry.create_system, entry.external_attr = 3, 0o644 << 16
             box.writestr(entry, files[name])
 
 

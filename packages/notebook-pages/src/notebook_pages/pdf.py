@@ -181,6 +181,25 @@ def tell_numbers(text):
             figure.insert_after(BeautifulSoup(words, "html.parser"))
 
 
+def name_places(text, page):
+    """Give the places of a page, and the references to them, names that no other page has."""
+    for element in text.find_all(True):
+        if element.get("id"):
+            element["id"] = place(page, element["id"])
+        for name, value in list(element.attrs.items()):
+            if name == "href" and not re.match(r"\w+:", value):
+                if (destination := target(page, value)) is None:
+                    # This download is not part of the PDF.
+                    element.unwrap()
+                else:
+                    element["href"] = f"#{destination}"
+            elif name in NAMES_OF_OTHERS:
+                names = value if isinstance(value, list) else value.split()
+                element[name] = " ".join(place(page, name_on_page) for name_on_page in names)
+            elif isinstance(value, str) and "url(#" in value:
+                element[name] = value.replace("url(#", f"url(#{place(page)}--")
+
+
 def article(site, page, set_formula=as_picture):
     """Return the text of a page, ready to be combined with the others in one document."""
     soup = BeautifulSoup((site / f"{page}.html").read_text("utf8"), "lxml")
@@ -215,20 +234,7 @@ def article(site, page, set_formula=as_picture):
         if element.name == "figure":
             # With this attribute, a PDF would read out only that name.
             element.attrs.pop("aria-labelledby", None)
-        if element.get("id"):
-            element["id"] = place(page, element["id"])
-        for name, value in list(element.attrs.items()):
-            if name == "href" and not re.match(r"\w+:", value):
-                if (destination := target(page, value)) is None:
-                    # This download is not part of the PDF.
-                    element.unwrap()
-                else:
-                    element["href"] = f"#{destination}"
-            elif name in NAMES_OF_OTHERS:
-                names = value if isinstance(value, list) else value.split()
-                element[name] = " ".join(place(page, name_on_page) for name_on_page in names)
-            elif isinstance(value, str) and "url(#" in value:
-                element[name] = value.replace("url(#", f"url(#{place(page)}--")
+    name_places(text, page)
     text["id"] = place(page)
     return text
 

@@ -8,7 +8,8 @@
   lock file contains no addresses, so that it works with any registry.
 
 Two things need a decision: a new major version in ``package.json``, which is made by hand there,
-and a package that a wheel for browsers newly needs, which is reported here.
+and a package that a wheel for browsers newly needs. The tests of ``.ci/run`` that open notebooks in
+a browser fail without it; add a line with its name and version to ``lite/wheels.txt``.
 """
 
 import json
@@ -18,7 +19,6 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-from packaging.markers import default_environment
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from packaging.version import Version
@@ -30,8 +30,6 @@ from .set_up import IN_BROWSERS, LOCK, PACKAGE, WHEELS, npm
 CONSTRAINTS = REPOSITORY / "constraints.txt"
 # npm packages that are not updated, with the reasons.
 HELD = {"codemirror": "later versions contain an older editor, published by mistake"}
-# Front ends, which wheels for browsers require and do not get, since JupyterLite has its own.
-NOT_IN_BROWSERS = {"jupyterlab-widgets", "widgetsnbextension"}
 
 
 def comments(text):
@@ -113,7 +111,7 @@ def constraints():
 
 
 def wheels(old, versions):
-    """Return the new text of a list of wheels for browsers, from ``old``, and pip's reports."""
+    """Return the new text of a list of wheels for browsers, from ``old``."""
     requirements = [
         f"{name}=={versions[name]}" if name in versions else f"{name}>={version}"
         for name, version in pins(old).items()
@@ -127,28 +125,7 @@ def wheels(old, versions):
     for name in pins(old):
         digest = by_name[name]["download_info"]["archive_info"]["hashes"]["sha256"]
         lines.append(f"{name}=={by_name[name]['metadata']['version']} --hash=sha256:{digest}")
-    return "\n".join(lines) + "\n", reports
-
-
-def missing(reports):
-    """Return a sentence for each package that wheels for browsers need and no list has."""
-    browser = default_environment() | {
-        "python_version": "3.14",
-        "python_full_version": "3.14.0",
-        "sys_platform": "emscripten",
-        "platform_system": "Emscripten",
-    }
-    there = {canonicalize_name(report["metadata"]["name"]) for report in reports} | NOT_IN_BROWSERS
-    for report in reports:
-        for requirement in map(Requirement, report["metadata"].get("requires_dist", ())):
-            needed = requirement.marker is None or requirement.marker.evaluate(
-                browser | {"extra": ""}
-            )
-            if needed and canonicalize_name(requirement.name) not in there:
-                yield (
-                    f"{report['metadata']['name']} {report['metadata']['version']} needs "
-                    f"{requirement.name}"
-                )
+    return "\n".join(lines) + "\n"
 
 
 def scripts():
@@ -182,18 +159,10 @@ def scripts():
 
 
 def main():
-    new, reports = {CONSTRAINTS: constraints()}, []
+    new = {CONSTRAINTS: constraints()}
     for path in WHEELS:
-        new[path], reports_of_list = wheels(path.read_text("utf8"), pins(new[CONSTRAINTS]))
-        reports += reports_of_list
+        new[path] = wheels(path.read_text("utf8"), pins(new[CONSTRAINTS]))
     new[PACKAGE], new[LOCK] = scripts()
-    if untold := list(missing(reports)):
-        sys.exit(
-            "Nothing was written. In browsers "
-            + "; ".join(untold)
-            + ": add a line with its name and version to notebook_pages/lite/wheels.txt, then try "
-            "again."
-        )
     for path, text in new.items():
         changed = path.read_text("utf8") != text
         path.write_text(text, "utf8")

@@ -16,8 +16,7 @@ from docutils import nodes
 from sphinx.util.docutils import SphinxDirective
 
 from .execution import STORED
-from .paths import LICENCES, LICENCES_SAID, edition
-from .take_away import notebook_address
+from .paths import LICENCES, edition
 
 # In characters; no site shows a longer description.
 LONGEST = 200
@@ -69,9 +68,6 @@ def shortened(words):
     )
 
 
-DESCRIPTION = re.compile(r'<meta name="description" content="([^"]*)"')
-
-
 def plain_title(context):
     return html.unescape(re.sub(r"<[^>]+>", "", context.get("title") or "")).strip()
 
@@ -108,29 +104,6 @@ def write_head(app, pagename, templatename, context, doctree):
             f"{repository}/issues/new?{urlencode({'title': f'{title}: ', 'body': body})}"
         )
         context["suggest_change"] = f"{repository}/edit/{branch}/{quote(source)}"
-
-
-def described(app, page):
-    """Return the description of a page, even if this build has not written it."""
-    text = Path(app.outdir, f"{page}.html").read_text("utf8")
-    return html.unescape(DESCRIPTION.search(text)[1])
-
-
-def outline(app):
-    """Return the pages as a Markdown list with descriptions, for programs (https://llmstxt.org)."""
-    env, root, address = app.env, app.config.root_doc, app.config.html_baseurl or ""
-    lines = [f"# {app.config.html_title}", "", f"> {described(app, root)}", ""]
-    credits = filter(
-        None,
-        [f"By {app.config.author}.", LICENCES_SAID, "Notebooks hold the whole text in Markdown."],
-    )
-    lines += [" ".join(credits), "", "## Pages", ""]
-    for page in in_order(env)[1:]:
-        title = env.titles[page].astext()
-        is_one = str(env.doc2path(page)).endswith(".ipynb")
-        notebook = f" ([notebook]({address}{notebook_address(page)}))" if is_one else ""
-        lines.append(f"- [{title}]({address}{page}.html): {described(app, page)}{notebook}")
-    return "\n".join(lines) + "\n"
 
 
 def in_order(env):
@@ -207,7 +180,6 @@ def write_files(app, exception):
             "utf8",
         )
     (site / "robots.txt").write_text(robots, "utf8")
-    (site / "llms.txt").write_text(outline(app), "utf8")
 
 
 class CiteThisBook(SphinxDirective):

@@ -28,7 +28,7 @@ class subject_index(nodes.General, nodes.Element):
 
 class SubjectIndex(SphinxDirective):
     def run(self):
-        self.env.subject_index_page = self.env.docname
+        self.env.metadata[self.env.docname]["shows subjects"] = True
         return [subject_index()]
 
 
@@ -56,7 +56,7 @@ def note_uses(app, doctree):
     for text in doctree.findall(lambda node: isinstance(node, (nodes.paragraph, nodes.title))):
         section = section_of(text)
         words[section] = f"{words.get(section, '')} {text.astext().casefold()}"
-    app.env.subject_uses[app.env.docname] = (terms, names, words)
+    app.env.metadata[app.env.docname]["subjects"] = (terms, names, words)
 
 
 def pages_mentioning(app, order, term):
@@ -65,32 +65,14 @@ def pages_mentioning(app, order, term):
     pattern = re.compile(rf"(?<!\w){stem}s?(?!\w)")
     mentions = []
     for page in order:
-        sections = app.env.subject_uses[page][2].items()
+        sections = app.env.metadata[page]["subjects"][2].items()
         mentions += [(page, section) for section, words in sections if pattern.search(words)][:1]
     return mentions[:MOST]
 
 
-def begin(app, env, docnames):
-    if not hasattr(env, "subject_uses"):
-        env.subject_uses = {}
-
-
-def forget(app, env, docname):
-    env.subject_uses.pop(docname, None)
-
-
-def merge(app, env, docnames, other_env):
-    env.subject_uses.update(
-        {name: other_env.subject_uses[name] for name in docnames if name in other_env.subject_uses}
-    )
-    if page := getattr(other_env, "subject_index_page", None):
-        env.subject_index_page = page
-
-
 def write_anew(app, env):
     """Write the page again, because it depends on all others."""
-    page = getattr(env, "subject_index_page", None)
-    return [page] if page in env.found_docs else []
+    return [page for page, facts in env.metadata.items() if "shows subjects" in facts]
 
 
 def link(app, page, target, anchor, words):
@@ -157,16 +139,12 @@ def symbols(app):
 
 def fill(app, doctree, docname):
     for stand_in in list(doctree.findall(subject_index)):
-        order = [
-            name
-            for name in in_order(app.env)
-            if name in app.env.subject_uses and name not in NOT_LISTED
-        ]
+        order = [name for name in in_order(app.env) if name not in NOT_LISTED]
         uses = defaultdict(list)
         for page in order:
             if page == docname:
                 continue
-            for kind, glossary in zip(("term", "name"), app.env.subject_uses[page]):
+            for kind, glossary in zip(("term", "name"), app.env.metadata[page]["subjects"]):
                 for name, section in glossary.items():
                     uses[kind, name].append((page, section))
         texts = [page for page in order if page.startswith("chapters/")]
@@ -210,9 +188,6 @@ def fill(app, doctree, docname):
 def setup(app):
     app.add_node(subject_index)
     app.add_directive("subject-index", SubjectIndex)
-    app.connect("env-before-read-docs", begin)
-    app.connect("env-purge-doc", forget)
-    app.connect("env-merge-info", merge)
     app.connect("doctree-read", note_uses)
     app.connect("env-updated", write_anew)
     app.connect("doctree-resolved", fill)

@@ -66,22 +66,6 @@ def wheels_of_kernel():
     return [*sorted(FETCHED.glob("*.whl")), *kernel]
 
 
-def wheels_fetched():
-    """Return the fetched wheels for browsers, those that take longest to compile first."""
-    return sorted(runtime.FETCHED.glob("*.whl")), wheels_of_kernel()
-
-
-def is_compiled():
-    """Check whether all fetched wheels have been byte-compiled before."""
-    return all(runtime.compiled_form(wheel).exists() for part in wheels_fetched() for wheel in part)
-
-
-def compile_ahead():
-    """Byte-compile the wheels for browsers ahead of time."""
-    for wheels in wheels_fetched():
-        runtime.compile_wheels(wheels)
-
-
 def wheel_of_stand_in():
     """Return a wheel of NumPy's stand-in for notebooks, and of the line that installs it."""
     path, about = BUILD / "plain_numpy-1-py3-none-any.whl", "plain_numpy-1.dist-info"

@@ -12,20 +12,6 @@ SOURCES = {
     "off": "This site does not offer NumPy and Matplotlib: those cells keep their printed results.",
     "folder": "Here NumPy and Matplotlib come from the same server as the pages.",
 }
-WIDGET = "hold a moving figure"
-COLUMNS = (WIDGET, "draw with Matplotlib", "compute with NumPy", "need SciPy")
-
-
-def column(kind):
-    if "scipy" in kind["needs"]:
-        return "need SciPy"
-    if set(kind["needs"]) & {"numpy", "matplotlib"}:
-        return (
-            "draw with Matplotlib"
-            if kind["needs"] == ["matplotlib"] or kind["figure"]
-            else "compute with NumPy"
-        )
-    return WIDGET
 
 
 def asks_nobody(kind):
@@ -33,41 +19,34 @@ def asks_nobody(kind):
     return set(kind["needs"]) <= {"anywidget"}
 
 
-def row(page, kinds):
-    cells = {name: [] for name in COLUMNS}
-    for number, kind in enumerate(kinds, start=1):
-        if kind["needs"]:
-            cells[column(kind)].append(str(number))
-    numbers = " | ".join(", ".join(cells[name]) for name in COLUMNS)
-    return (
-        f"| {{doc}}`/{page}` | {sum(map(asks_nobody, kinds))}\u00a0of\u00a0{len(kinds)} | "
-        f"{numbers} |"
-    )
-
-
 class NeedsMore(SphinxDirective):
     def run(self):
-        order = list(self.config.external_site_map)
+        cells = kinds_of_cells()
         pages = {
-            page: on_the_page(kinds) for page, kinds in kinds_of_cells().items() if page in order
+            page: on_the_page(cells[page])
+            for page in self.config.external_site_map
+            if page in cells
         }
+        lacking = {
+            page: [str(number) for number, kind in enumerate(kinds, 1) if not asks_nobody(kind)]
+            for page, kinds in pages.items()
+        }
+        count, more = sum(map(len, pages.values())), sum(map(len, lacking.values()))
         setting = self.config.numpy_in_the_page or "off"
-        every = [kind for kinds in pages.values() for kind in kinds]
-        alone = sum(map(asks_nobody, every))
-        some = [page for page, kinds in pages.items() if any(kind["needs"] for kind in kinds)]
         lines = [
             SOURCES.get(setting, SOURCES["folder"]),
-            f"Of {len(every)} cells, {alone} ({int(100 * alone / len(every))} per cent) run in the "
-            "page without any other server. "
-            "Pages that need nothing but SymPy and this book's own packages: "
-            f"{len(pages) - len(some)} of {len(pages)}. "
-            "The table lists the cells that need more, by their numbers from the top of each page. "
-            "A cell that uses a name defined in one of them needs the same packages. "
-            "The packages for moving figures are part of this site.",
+            f"Of {count} cells, {count - more} ({int(100 * (count - more) / count)} per cent) run "
+            "in the page without any other server. The table lists the others, by their numbers "
+            "from the top of each page. A cell that uses a name defined in one of them needs the "
+            "same packages.",
             "",
-            f"| page | run | {' | '.join(COLUMNS)} |",
-            "|---|---|" + "---|" * len(COLUMNS),
-            *(row(page, pages[page]) for page in sorted(some, key=order.index)),
+            "| page | cells | that need more |",
+            "|---|---|---|",
+            *(
+                f"| {{doc}}`/{page}` | {len(pages[page])} | {', '.join(numbers)} |"
+                for page, numbers in lacking.items()
+                if numbers
+            ),
         ]
         # The needs of a cell depend on our packages, too.
         self.env.note_reread()
