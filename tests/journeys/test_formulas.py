@@ -6,22 +6,24 @@ CHAPTER = "chapters/unit-quaternions.html"
 SETTLED = "() => !document.documentElement.matches('.settling, .in-parts')"
 
 
-@pytest.fixture
-def page(browser):
+@pytest.fixture(scope="module")
+def context(browser):
     context = browser.new_context(viewport={"width": 380, "height": 760})
     context.grant_permissions(["clipboard-read", "clipboard-write"])
-    yield context.new_page()
+    yield context
     context.close()
 
 
-def open_chapter(page, site):
+@pytest.fixture(scope="module")
+def chapter(context, site):
+    page = context.new_page()
     page.goto(site + CHAPTER)
     page.wait_for_function(SETTLED)
+    return page
 
 
-def test_a_browser_that_translates_leaves_formulas_alone(page, site):
-    open_chapter(page, site)
-    translated = page.evaluate(
+def test_a_browser_that_translates_leaves_formulas_alone(chapter):
+    translated = chapter.evaluate(
         "[...document.querySelectorAll('.katex')].map((formula) => formula.translate)"
     )
     assert len(translated) > 50 and not any(translated)
@@ -29,25 +31,25 @@ def test_a_browser_that_translates_leaves_formulas_alone(page, site):
 
 def copied(page, selector):
     """Return the text that a reader gets by selecting an element and copying it."""
+    page.bring_to_front()
     page.locator(selector).first.evaluate("(box) => getSelection().selectAllChildren(box)")
     page.keyboard.press("Control+c")
     return page.evaluate("navigator.clipboard.readText()")
 
 
-def test_a_sentence_is_copied_with_the_tex_of_its_formulas(page, site):
-    open_chapter(page, site)
-    text = copied(page, "article section p:has(.katex)")
+def test_a_sentence_is_copied_with_the_tex_of_its_formulas(chapter):
+    text = copied(chapter, "article section p:has(.katex)")
     assert "$" in text and "\n" not in text.strip()
     assert text.count("$") % 2 == 0 and "\u2061" not in text
 
 
-def test_numbers_of_a_figure_are_copied_as_programs_read_them(page, site):
-    open_chapter(page, site)
-    assert set(copied(page, ".moving[data-ready] .readouts")) & set(".\u2212\u2007") == {"."}
+def test_numbers_of_a_figure_are_copied_as_programs_read_them(chapter):
+    assert set(copied(chapter, ".moving[data-ready] .readouts")) & set(".\u2212\u2007") == {"."}
 
 
-def test_text_is_copied_with_the_code_below_it_and_no_buttons(page, site):
+def test_text_is_copied_with_the_code_below_it_and_no_buttons(context, site):
     """Press in a paragraph, and release in the second cell below it."""
+    page = context.new_page()
     page.goto(site + "exercises/simple-orientations.html")
     page.wait_for_function(SETTLED)
     check = page.locator(".cell_input").filter(has_text="skier', weight")
@@ -72,26 +74,24 @@ def test_text_is_copied_with_the_code_below_it_and_no_buttons(page, site):
         ("article div.math.display .math-box", "$$"),
     ],
 )
-def test_part_of_a_formula_is_copied_as_the_whole_formula(page, site, part, fence):
-    open_chapter(page, site)
-    text = copied(page, part).strip()
+def test_part_of_a_formula_is_copied_as_the_whole_formula(chapter, part, fence):
+    text = copied(chapter, part).strip()
     assert text.startswith(fence) and text.endswith(fence) and text.count("$") == 2 * len(fence)
 
 
-def test_matrices_are_whole_on_a_phone_or_scroll_with_the_keyboard(page, site):
-    open_chapter(page, site)
-    matrices = page.locator(".cell_output .math-box")
+def test_matrices_are_whole_on_a_phone_or_scroll_with_the_keyboard(chapter):
+    matrices = chapter.locator(".cell_output .math-box")
     wide = []
     for matrix in matrices.all():
         matrix.scroll_into_view_if_needed()
-        page.wait_for_timeout(100)
+        chapter.wait_for_timeout(100)
         hidden = matrix.evaluate("(box) => box.scrollWidth - box.clientWidth")
         if hidden > 1:
             wide.append(matrix)
             matrix.focus()
             for _ in range(20):
-                page.keyboard.press("ArrowRight")
-            page.wait_for_timeout(400)
+                chapter.keyboard.press("ArrowRight")
+            chapter.wait_for_timeout(400)
             left = matrix.evaluate("(box) => box.scrollWidth - box.clientWidth - box.scrollLeft")
             assert left <= 1, "its last column cannot be reached"
     assert len(wide) <= 2, "the matrix of a quaternion does not fit"

@@ -179,7 +179,7 @@ def test_the_fields_of_figures_take_every_character_and_new_lines(page, site, ad
     expect(field).to_have_value(f"{ASCII}\na/b")
 
 
-@pytest.mark.parametrize("address", [CELL, "workbench.html", "rotations.html", "index.html"])
+@pytest.mark.parametrize("address", [CELL, "workbench.html", "rotations.html"])
 def test_who_dictates_hello_to_a_page_turns_nothing(page, site, address):
     """Dictation types where nothing accepts text."""
     page.goto(site + address)

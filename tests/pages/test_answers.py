@@ -189,21 +189,6 @@ def test_books_code_asks_and_can_be_undone(context, site):
     assert "mine = 1" in tab.shown() and "mine = 2" in tab.shown()
 
 
-def test_fingerprints_are_those_of_the_page(context, site):
-    tab = Tab(context, site, "appendix/solutions").edit()
-    for code in ("é = '数'  # 𝐂", "", "x"):
-        tab.write(1, f"{code} = 1")
-        tab.page.evaluate("null")
-    (entry,) = (
-        json.loads(text) for key, text in tab.page.evaluate(KEPT).items() if " answer " in key
-    )
-    notebook = nbformat.read(REPOSITORY / "appendix" / "solutions.ipynb", as_version=4)
-    source = next(cell.source for cell in notebook.cells if cell.cell_type == "code")
-    assert entry["original"] == fingerprint_of_code(source)
-    asides = [key for key in tab.page.evaluate(KEPT) if " earlier " in key]
-    assert asides == []  # typed over in one tab: nobody else's text
-
-
 # --- hand in and load, back up and restore --------------------------------------------------------
 
 
