@@ -7,7 +7,7 @@ import stat
 
 import nbformat
 import pytest
-from course_by_commands import Course, notebook
+from course_by_commands import Course
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 TERM = """
@@ -122,30 +122,21 @@ def test_a_time_zone_that_there_is_not_is_refused(course):
     )
 
 
-def test_a_blank_copy_counts_less_than_finished_work(course):
+def test_blank_copies_count_less_than_finished_work(course):
+    """One is as it was handed out, and the other has nothing but a remark."""
     folder = collected(course, "ada", "hw1")
-    blank = nbformat.read(course.solutions / "hw1.ipynb", 4)
-    cells = ["from coursework import check", "sum = ...  # your answer", "check('hw1/sum', sum)"]
-    blank = notebook(*cells, "arm = ...  # your answer", "check('hw1/arm', arm)")
-    nbformat.write(blank, folder / "hw1-Copy1.ipynb")
+    made = course.answers("hw1", sum=None, arm=None)
+    for name, remark in (("hw1-Copy1", ""), ("hw1-Copy2", "# I shall do this tomorrow")):
+        made.cells.append(nbformat.v4.new_code_cell(remark, id=name))
+        nbformat.write(made, folder / f"{name}.ipynb")
     os.utime(folder / "hw1.ipynb", (1, 1))
     said = course.grade()
-    assert (
-        "hw1-Copy1.ipynb  (hw1; the name of the folder) DOES NOT COUNT: it has no answers" in said
-    )
+    for name in ("hw1-Copy1", "hw1-Copy2"):
+        matched = f"{name}.ipynb  (hw1; the name of the folder)"
+        assert f"{matched} DOES NOT COUNT: it has no answers" in said
     assert course.points("hw1") == {"ada": 8}
     page = (course.marks / "feedback" / "ada" / "hw1.html").read_text()
     assert "was not counted: it has no answers" in page
-
-
-def test_a_copy_with_nothing_but_remarks_counts_less_than_finished_work(course):
-    folder = collected(course, "ada", "hw1")
-    made = course.answers("hw1", sum=None, arm=None)
-    made.cells.append(nbformat.v4.new_code_cell("# I shall do this tomorrow", id="remark"))
-    nbformat.write(made, folder / "hw1-Copy1.ipynb")
-    os.utime(folder / "hw1.ipynb", (1, 1))
-    assert "DOES NOT COUNT: it has no answers" in course.grade()
-    assert course.points("hw1") == {"ada": 8}
 
 
 def test_what_came_in_time_counts_before_what_came_late(tmp_path):
