@@ -32,8 +32,8 @@ from coursework.checking.reply import Reply
 from coursework.grading.grade import grade
 from coursework.grading.judging import marking
 from coursework.grading.record import Answer, Remembered
-from coursework.grading.reporting.reports import feedback_of
 from coursework.grading.running import Running
+from coursework.grading.store import feedback_of
 from coursework.grading.submissions import intake
 
 NAME = "levers/see-saw"

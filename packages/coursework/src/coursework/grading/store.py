@@ -139,8 +139,7 @@ class Store:
         aside = self.folder / "put-aside" / place.relative_to(self.records)
         aside.parent.mkdir(parents=True, exist_ok=True)
         os.replace(place, aside)
-        page = self.folder / "feedback" / file_name(student) / f"{file_name(assignment)}.html"
-        page.unlink(missing_ok=True)
+        (self.folder / feedback_of(student, assignment)).unlink(missing_ok=True)
         return aside
 
     def all(self) -> Iterator[Record]:
@@ -205,6 +204,11 @@ def file_name(name: str) -> str:
         return plain
     digest = hashlib.sha256(name.encode("utf8", "surrogatepass")).hexdigest()
     return f"{plain.lower() or 'student'}-{digest[:20]}"
+
+
+def feedback_of(student: str, assignment: str) -> str:
+    """Return the path of a student's page of feedback in the folder of results."""
+    return f"feedback/{file_name(student)}/{file_name(assignment)}.html"
 
 
 def write(

@@ -21,7 +21,7 @@ from ...checking.writing import readable
 from ..judging.journal import Exported, Given, Journal, with_decisions
 from ..judging.term import DAMAGED, EXCUSED, Result, Term, result_of, term_of, unknown_times
 from ..record import Identity, Record
-from ..store import Store, file_name, write
+from ..store import Store, feedback_of, file_name, write
 from ..submissions.intake import refused_of
 from ..submissions.languages import LANGUAGES, in_english
 from ..submissions.roster import encoding_of, local_parts, turned
@@ -711,12 +711,7 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> str:
         )
     pages: dict[str, bytes] = {}
     for record in marks.records:
-        page = (
-            store.folder
-            / "feedback"
-            / file_name(record.student)
-            / f"{file_name(record.assignment)}.html"
-        )
+        page = store.folder / feedback_of(record.student, record.assignment)
         if not page.exists() or record.reply is None:
             raise CannotExport(f"There is no feedback for {record.student!r}. Grade again.")
         name = f"{record.reply}feedback-{file_name(record.assignment).replace('_', '-')}.html"

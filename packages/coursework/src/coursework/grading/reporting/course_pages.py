@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ...checking.writing import answer_as_text
 from ..judging.term import DAMAGED, FILE, Result, Term, results_of, unknown_times
-from ..store import Store, file_name, write
+from ..store import Store, feedback_of, file_name, write
 from ..submissions.intake import refused_of
 from ..tables import table
 from .statistics import Question, Same, Statistics
@@ -141,10 +141,7 @@ def _write_student(
     total: float | None,
     term: Term,
 ) -> None:
-    links = {
-        name: f"../../feedback/{file_name(term.group_of(student, name))}/{file_name(name)}.html"
-        for name in records
-    }
+    links = {name: f"../../{feedback_of(term.group_of(student, name), name)}" for name in records}
     content = page(
         "student.html",
         name=term.name,
@@ -213,8 +210,7 @@ def _groups(found: Question, assignment: str) -> tuple[list[dict[str, object]], 
                         "who": [
                             {
                                 "student": student,
-                                "page": "../../feedback/"
-                                f"{file_name(student)}/{file_name(assignment)}.html",
+                                "page": f"../../{feedback_of(student, assignment)}",
                             }
                             for student in same.who
                         ],

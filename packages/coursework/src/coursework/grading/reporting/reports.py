@@ -23,7 +23,7 @@ from ..judging.journal import case_id
 from ..judging.laboratory import PAGE, Laboratory
 from ..judging.term import Assignment, Sat, Term, result_of, term_of
 from ..record import Cell, Mark, Record, RunNotebook
-from ..store import Store, file_name, write
+from ..store import Store, feedback_of, file_name, write
 from ..submissions.intake import Refused, refused_of
 from ..tables import lines, table
 from .templates_of_pages import page
@@ -149,12 +149,7 @@ def write_all(store: Store) -> None:
     names: dict[str, None] = {}
     links, term = store.said(LINKS, by_name(text)) or {}, term_of(store.folder)
     for record in store.all():
-        place = (
-            store.folder
-            / "feedback"
-            / file_name(record.student)
-            / f"{file_name(record.assignment)}.html"
-        )
+        place = store.folder / feedback_of(record.student, record.assignment)
         sittings = {name: store.read(record.student, name) for name in term.sittings}
         sat = {name: sheet.marks for name, sheet in sittings.items() if sheet}
         _write_if_new(place, feedback(record, links, term, sat))
@@ -313,11 +308,6 @@ def _stopped(notebook: RunNotebook) -> list[tuple[int, Cell]]:
 
 
 # --- for the instructor -------------------------------------------------------------------------
-
-
-def feedback_of(student: str, assignment: str) -> str:
-    """Return the path of a page of feedback in the folder of results."""
-    return f"feedback/{file_name(student)}/{file_name(assignment)}.html"
 
 
 def deed(mark: Mark) -> str:
