@@ -75,6 +75,13 @@ def changed(old, new, text=QUESTION):
         ),
         ({"question": changed("kind='expression', ", "")}, "trial/one: give its kind"),
         (
+            {
+                "question": changed("expression", "sense"),
+                "answer": changed("3 * x", "'left'", ANSWER),
+            },
+            "the kind 'sense' of a plug-in has answers in words, so its `Kind` needs `another`",
+        ),
+        (
             {"question": changed("symbols", "symbol")},
             "`question` has no argument `symbol`. Did you mean `symbols`?",
         ),

@@ -33,7 +33,7 @@ from ..checking.catalogue import by_short_name
 from ..checking.catalogue import mistakes as catalogued_mistakes
 from ..checking.evaluate import MP
 from ..checking.fields import Json, Misread
-from ..checking.kinds import PARTS, Blank, Fault, Number, Undecidable, sign_limit
+from ..checking.kinds import KINDS, PARTS, Blank, Fault, Number, Undecidable, sign_limit
 from ..checking.mistakes import GENERAL, Mistake, short_name
 from ..checking.plain import NotPlain, Plain, to_plain
 from ..checking.plugins import kinds
@@ -807,6 +807,11 @@ def question(
     for needed in known.needs:
         if needed not in about:
             raise AuthorError(f"{name}: a question of kind {kind!r} needs {needed!r}.")
+    if known.text and not (known.another or known.by_a_person or kind in KINDS):
+        raise AuthorError(
+            f"{name}: the kind {kind!r} of a plug-in has answers in words, so its `Kind` needs "
+            "`another`, a function that returns a wrong answer of the right form."
+        )
     try:
         public = replace(Question.from_json(about, name), variant=variant)
     except Misread as error:

@@ -13,7 +13,9 @@ class Kind(NamedTuple):
         For answers that are numbers: returns the nodes of an answer's entries, in order. Raises a
         fault of the form.
     text : function (question, plain) -> str
-        For answers in words: returns the one spelling of what is meant.
+        For answers in words: returns the one spelling of what is meant. ``plain`` is the answer as
+        plain data. ``word(plain, "One word, in quotation marks")`` from
+        `coursework.checking.kinds` returns its string, or raises a fault with these words.
     unique : function (question, numbers) -> list
         Reduces equally right values, such as a quaternion and its negative, to one of them.
     fault : function (question, numbers) -> Fault or None
@@ -54,7 +56,8 @@ class Kind(NamedTuple):
         Whether a person marks the answers. Then nothing is sealed, and no program decides what is
         right.
     another : function (question, answer) -> answer
-        Returns a different answer of the right form.
+        Returns a different answer of the right form, to test a question with. A plug-in's kinds
+        with answers in words need it.
     """
 
     entries: Callable[..., Any] | None = None

@@ -1,6 +1,6 @@
 """A plug-in for the tests, like that of a course about rotations, with one kind of question."""
 
-from coursework.checking.kinds import TRANSPOSED, Fault, row_entries, slack
+from coursework.checking.kinds import TRANSPOSED, Fault, row_entries, slack, word
 from coursework.checking.mistakes import Mistake
 from coursework.checking.plugins import Kind
 
@@ -50,6 +50,7 @@ def another(question, answer):
 
 
 KINDS = {
+    "sense": Kind(text=lambda question, plain: word(plain, "A word, in quotation marks").lower()),
     "rotation matrix": Kind(
         begin="Draw both triads for a small angle and read off one row.",
         entries=lambda question, value: row_entries(value, 3, 3, "A matrix of size 3 × 3"),
@@ -66,6 +67,6 @@ KINDS = {
         slips=TRANSPOSED,
         build=rotation_matrix,
         another=another,
-    )
+    ),
 }
 DEEDS = {"sine and cosine exchanged": "interchanged sine and cosine in the turn about {axis}"}
