@@ -342,8 +342,13 @@ def test_one_notebook_is_tried_alone(statics, tmp_path, monkeypatch, capsys):
     main(["selftest", "first-steps"])
     text = (course / "build" / "selftest.html").read_text("utf8")
     assert "first-steps/" in text and "moments/" not in text
-    with pytest.raises(SystemExit, match="has no levers.ipynb; choose from"):
-        main(["selftest", "levers"])
+    (course / "course.toml").write_text('title = "Statics"\npackage = "build_tools:wheels"\n')
+    for command, said in (
+        (["selftest", "levers"], "has no levers.ipynb; choose from"),
+        (["release", "first-steps"], "package = 'build_tools:wheels', but we cannot use it"),
+    ):
+        with pytest.raises(SystemExit, match=said):
+            main(command)
 
 
 def test_an_update_brings_new_sealed_questions(statics, tmp_path):
@@ -354,11 +359,12 @@ def test_an_update_brings_new_sealed_questions(statics, tmp_path):
     (work / "manifest.json").unlink()  # It was unpacked before there were manifests.
     (work / "sealed" / "first-steps.json").write_text("older")
     said = update(find_course(statics).archive, work)
-    assert "replaced    sealed/first-steps.json" in said
-    assert json.loads((work / "sealed" / "first-steps.json").read_text("utf8"))["questions"]
-    assert (work / "first-steps.ipynb").read_text() == "mine" and (
-        work / "first-steps-new-1.ipynb"
-    ).exists()
+    assert (
+        "replaced    sealed/first-steps.json" in said
+        and json.loads((work / "sealed" / "first-steps.json").read_text("utf8"))["questions"]
+        and (work / "first-steps.ipynb").read_text() == "mine"
+        and (work / "first-steps-new-1.ipynb").exists()
+    )
 
 
 @pytest.mark.long

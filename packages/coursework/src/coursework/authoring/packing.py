@@ -10,12 +10,13 @@ import tempfile
 import zipfile
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from datetime import UTC, datetime
-from importlib import import_module
 from pathlib import Path
+from pkgutil import resolve_name
 
 import coursework
 
 from ..checking.update import MANIFEST, manifest
+from .author import AuthorError
 from .course import Course, find_course
 
 #: The time of every file in an archive, so that the same contents give the same bytes.
@@ -111,6 +112,17 @@ Tag: py3-none-any
 VERSION = re.compile(r'^__version__ = "(.*)"$', re.M)
 
 
+def own_wheels(course: Course, folder: str | Path) -> list[Path]:
+    """Return the wheels that the course builds for its students itself, if it does."""
+    try:
+        return list(resolve_name(course.package)(folder)) if course.package else []
+    except (ImportError, AttributeError) as error:
+        raise AuthorError(
+            f"course.toml says package = {course.package!r}, but we cannot use it: {error}. Write "
+            "MODULE:FUNCTION, where Python can import the module, for example from your package."
+        ) from None
+
+
 def archive(course: Course, target: str | Path | None = None) -> Path:
     """Make the archive for students. The same contents give the same bytes.
 
@@ -123,13 +135,10 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
     target = Path(target or course.archive)
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        module, _, function = course.package.partition(":")
-        wheels = (
-            getattr(import_module(module), function)(folder)
-            if course.package
-            else [wheel("coursework-checks", folder)]
-        )
-        packages = {path.name: path.read_bytes() for path in wheels}
+        packages = {
+            path.name: path.read_bytes()
+            for path in own_wheels(course, folder) or [wheel("coursework-checks", folder)]
+        }
     files = {
         "README.txt": README.format(title=course.title).encode("utf8"),
         # The manifest lists the digest of each file.

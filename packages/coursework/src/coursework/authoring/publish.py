@@ -16,13 +16,13 @@ that it does not know.
 import re
 import tempfile
 from collections.abc import Callable
-from importlib import import_module, metadata
+from importlib import metadata
 from pathlib import Path
 from typing import TypedDict
 
 from .author import AuthorError
 from .course import Course
-from .packing import archive, dated, wheel, write_wheel
+from .packing import archive, dated, own_wheels, wheel, write_wheel
 
 GROUP = "coursework.pages"
 #: The version of the format of `Parts`.
@@ -96,12 +96,12 @@ def publish(course: Course, site: str | Path) -> Path:
 
 def parts_of(course: Course, folder: str | Path) -> Parts:
     """Return the parts from which the pages of a course are built."""
-    if course.package:
-        module, _, function = course.package.partition(":")
-        wheels, plugin = list(getattr(import_module(module), function)(folder)), ""
-    else:
-        plugin = re.sub(r"[^a-z0-9]+", "_", course.title.lower()).strip("_") + "_questions"
-        wheels = [wheel("coursework-checks", folder), questions_wheel(course, plugin, folder)]
+    own = re.sub(r"[^a-z0-9]+", "_", course.title.lower()).strip("_") + "_questions"
+    plugin = "" if course.package else own
+    wheels = own_wheels(course, folder) or [
+        wheel("coursework-checks", folder),
+        questions_wheel(course, plugin, folder),
+    ]
     return {
         "format": FORMAT,
         "title": course.title,
