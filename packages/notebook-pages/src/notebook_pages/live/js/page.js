@@ -16,9 +16,7 @@
     }
   };
 
-  // A page that a reader saved contains what this script, and the one for the copy buttons, once added.
-  document.querySelectorAll(".live-bar, .run-cell, .copybtn").forEach((old) => old.remove());
-
+  document.querySelectorAll(".live-bar, .run-cell, .copybtn").forEach((old) => old.remove()); // of a page that was saved
   // The bar at the bottom of the window, which covers part of the page, so that no line moves.
   const bar = make("section", { className: "live-bar", hidden: true });
   bar.setAttribute("aria-label", "Python on this page");
