@@ -25,7 +25,7 @@ from .questions import (
     rung_key,
     solution_on,
 )
-from .reading import calls_for, fault, read
+from .reading import Reading, calls_for, fault
 from .reply import HELP, Reply, Shown
 from .sealing import unseal
 from .variants import siblings_of, without_sibling
@@ -78,7 +78,7 @@ def check(name: str, answer: object) -> Reply:
         plain = to_plain(answer, calls_for(sealed.question), raise_missing=True)
         reply = judge(name, sealed, plain, student)
         if reply.outcome != "not attempted":
-            reply.shown = shown(sealed.question, plain)
+            reply.shown = shown(sealed.question, plain, reply.reading)
         elif answer is None:
             reply.messages = [
                 "Your answer is `None`. A function that returns nothing, such as `print`, gives "
@@ -100,7 +100,7 @@ def check(name: str, answer: object) -> Reply:
     return reply
 
 
-def shown(question: Question, plain: Plain) -> Shown:
+def shown(question: Question, plain: Plain, reading: Reading | None) -> Shown:
     """Return an answer as it was read; of a frame or a vector, the part that the question asks for.
 
     The picture does not affect the verdict: if it cannot be drawn, as without NumPy, there is none.
@@ -113,12 +113,8 @@ def shown(question: Question, plain: Plain) -> Shown:
             value = ["frame", text_of(value), {source: inner}] if value[0] == "frame" else inner
     draw = kinds()[question.kind].picture
     with suppress(Exception):
-        if (
-            draw
-            and not question.symbols
-            and not fault(question, reading_of_answer := read(question, plain))
-        ):
-            picture = draw(question, reading_of_answer.numbers[0])
+        if draw and reading and not question.symbols and not fault(question, reading):
+            picture = draw(question, reading.numbers[0])
     plain = {"value": value, "nodes": plain["nodes"]}
     text = ("a function that " if value[0] == "function" else "") + answer_as_text(plain)
     tex = answer_as_tex(plain)

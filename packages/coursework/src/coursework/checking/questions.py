@@ -383,7 +383,7 @@ def compare(
             reply = _taken_down(name, question, reading)
         else:
             reply = _compare(name, question, plain, reading, text, find, for_others)
-        reply.answer = hashlib.sha256(text.encode()).hexdigest()[:12]
+        reply.answer, reply.reading = hashlib.sha256(text.encode()).hexdigest()[:12], reading
         return reply
     except Blank:
         return Reply(

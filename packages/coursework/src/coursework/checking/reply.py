@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from .fields import Json
 from .question import KnownAnswer, Locker
+from .reading import Reading
 
 # Each outcome with its sign, its word and its colour: the word is for those who do not see the sign
 # or its colour.
@@ -82,6 +83,8 @@ class Reply:
         The answer as it was read.
     known : KnownAnswer or None
         The known mistake that it is, with its hints.
+    reading : Reading or None
+        The answer's numbers; ``None`` if it has none.
     """
 
     def __init__(
@@ -107,6 +110,7 @@ class Reply:
         self.details = details or {}
         self.shown: Shown | None = None
         self.opened, self.known = opened, known
+        self.reading: Reading | None = None
 
     def __repr__(self) -> str:
         _, word, _ = OUTCOMES[self.outcome]
