@@ -131,9 +131,7 @@ class _Bench:
         self.counts = False
         self.rates = self.forces = self.field = self.oriented = None
         warm = content.groups.get("temperature")
-        self.warmth = 0 * self.time
-        if warm:
-            self.warmth = np.interp(self.time, warm.time, warm.values[:, 0])
+        self.warmth = np.interp(self.time, warm.time, warm.values[:, 0]) if warm else 0 * self.time
 
     def say(
         self,
@@ -148,11 +146,8 @@ class _Bench:
         self.verdicts.append(Verdict(about, light, words, dict(evidence or {}), advice))
 
     def _missing(self, kind: str) -> None:
-        words, advice = (
-            "no heading names it",
-            f"If the file has one, name its columns: --columns {kind}=2-4.",
-        )
-        self.say(kind, UNKNOWN, words, {}, advice)
+        advice = f"If the file has one, name its columns: --columns {kind}=2-4."
+        self.say(kind, UNKNOWN, "no heading names it", {}, advice)
 
     # --- what is in it --------------------------------------------------------------------------
 

@@ -34,8 +34,15 @@ ANGLES = (
     ("alpha", "beta", "gamma"),
     ("psi", "theta", "phi"),
 )
-#: Words of a heading that do not name its sensor.
-BESIDE = "cal uncal raw ln wr adc smooth element axis value mps2 rad per sec micro t".split()
+#: The units in brackets that only one sensor has, for headings in other languages.
+UNITS = {
+    "gyroscope": r"(?:rad|deg|°)(?: ?/ ?s| s)|dps",
+    "accelerometer": r"m ?/ ?\(?s(?:\^?2|²)|m s\^?-2",
+    "magnetometer": r"[uµμ]t$|gauss",
+}
+#: Words of a heading that do not name its sensor, and words that are units unless they come first.
+BESIDE = "cal uncal raw ln wr adc smooth element axis value".split()
+UNIT_WORDS = "m s s2 ms2 mps2 rad deg dps per sec g mg ga ut micro t".split()
 CLOCK = r"\btime|stamp|elapsed|clock|\bt$|\bsec"
 COUNTER = r"counter|packet|number|index|frame|iteration|tick|\bsample\b(?! time)|\bcount$|\bid$"
 RATE = r"(?:rate|frequency)[\W_]*([\d.]+)\s*hz"
@@ -246,14 +253,15 @@ def _question(table: Table, trajectory: bool) -> str:
     """Ask about a file in which no sensor has a known name, showing its first rows."""
     rows = [" ".join(f"{value:.6g}" for value in row[:16]) for row in table.values[:3]]
     shown = "\n".join(f"    {row}" for row in [" ".join(table.columns[:16]), *rows])
-    words = (
-        "It contains orientations, like a trajectory, but not the sensor's values from which they "
-        "were computed. "
-    )
     return (
-        f"this file does not say which columns come from which sensor. {words * trajectory}Its "
-        f"headings and first rows are\n{shown}\nName the columns, counted from 1, for example: "
-        "--columns 'time=1 gyroscope=2-4:rad/s accelerometer=5-7'"
+        "this file does not say which columns come from which sensor. "
+        + (
+            "It contains orientations, like a trajectory, but not the sensor's values from which "
+            "they were computed. "
+        )
+        * trajectory
+        + f"Its headings and first rows are\n{shown}\nName the columns, counted from 1, for "
+        "example: --columns 'time=1 gyroscope=2-4:rad/s accelerometer=5-7'"
     )
 
 
@@ -268,10 +276,15 @@ def _words(heading: str) -> str:
     return " ".join(re.findall(r"[a-z0-9]+", apart.lower()))
 
 
+def _in_brackets(heading: str) -> str:
+    """Return what a heading has in brackets, which is usually a unit, in lower case."""
+    brackets = re.search(r"[(\[]([^)\]]*)[)\]]", heading)
+    return brackets[1].lower() if brackets else ""
+
+
 def _unit_of_time(heading: str) -> float | None:
     """Return the unit in a heading's brackets, or its last word, in seconds."""
-    brackets = re.search(r"[(\[]([^)\]]*)[)\]]", heading)
-    return UNITS_OF_TIME.get(brackets[1].lower() if brackets else _words(heading).split(" ")[-1])
+    return UNITS_OF_TIME.get(_in_brackets(heading) or _words(heading).split(" ")[-1])
 
 
 def _clock(table: Table) -> Clock:
@@ -335,19 +348,33 @@ def _stem_and_axis(heading: str) -> tuple[str, str]:
     >>> _stem_and_axis('gyroADC[0]'), _stem_and_axis('qw'), _stem_and_axis('X [mg]')
     (('gyro', '0'), ('q', 'w'), ('', 'x'))
     """
-    words = [word for word in _words(heading).split() if word not in BESIDE]
+    words = [
+        word
+        for k, word in enumerate(_words(heading).split())
+        if word not in BESIDE and not (k and word in UNIT_WORDS)
+    ]
     for place in (-1, 0):
         if words and re.fullmatch(r"[wxyz0-4]|q[0-3]", words[place]):
-            axis = words.pop(place)[-1]
-            return " ".join(words), axis
+            return " ".join(words[1:] if place == 0 else words[:-1]), words[place][-1]
     text = " ".join(words)
     joined = re.fullmatch(r"(.*[a-z])([wxyz]|(?<=q)[0-3])", text)
     return (joined[1], joined[2]) if joined else (text, "")
 
 
-def _kind(text: str) -> str:
-    """Return the kind of sensor that some words end with, or an empty string."""
-    return next((kind for kind, name in NAMES.items() if re.search(rf"\b(?:{name})$", text)), "")
+def _kind(stem: str, heading: str, table: str) -> str:
+    """Return the kind of sensor of a heading, or an empty string.
+
+    Its stem ends with the name. Without a stem, the name is a word of the table's. Otherwise the
+    unit may tell.
+
+    >>> _kind('shimmer gyro', '', ''), _kind('', 'X [mg]', 'ACC_today'), _kind('', 'X [dps]', '')
+    ('gyroscope', 'accelerometer', 'gyroscope')
+    """
+    text = stem or " ".join(word for word in _words(table).split() if len(word) > 2)
+    where = "$" if stem else r"\b"
+    kinds = [kind for kind, name in NAMES.items() if re.search(rf"\b(?:{name}){where}", text)]
+    kinds += [kind for kind, unit in UNITS.items() if re.search(unit, _in_brackets(heading))]
+    return (kinds or [""])[0]
 
 
 def _groups(table: Table, of_table: str) -> tuple[list[Group], list[str]]:
@@ -361,8 +388,7 @@ def _groups(table: Table, of_table: str) -> tuple[list[Group], list[str]]:
         rows = np.isfinite(table.values[:, columns]).all(axis=1)
         rows &= kind != "quaternion" or table.values[:, columns].any(axis=1)
         if rows.sum() > 8:
-            names = [table.columns[k] for k in columns]
-            values = table.values[rows][:, columns]
+            names, values = [table.columns[k] for k in columns], table.values[rows][:, columns]
             groups.append(Group(kind, names, clock.time[rows], values, clock, of_table))
             taken.update(columns)
 
@@ -372,7 +398,7 @@ def _groups(table: Table, of_table: str) -> tuple[list[Group], list[str]]:
         if axis and k != clock.column:
             stems.setdefault(stem, {}).setdefault(axis, k)
     for stem, axes in stems.items():
-        kind = _kind(stem or _words(table.name.partition(".")[0]))
+        kind = _kind(stem, table.columns[next(iter(axes.values()))], table.name)
         order = "".join(axes)
         if len(axes) == 4 and (kind == "quaternion" or not stem):
             # Some write z before y before x.
@@ -385,7 +411,7 @@ def _groups(table: Table, of_table: str) -> tuple[list[Group], list[str]]:
         having = [
             sorted(
                 (k for k, heading in enumerate(table.columns) if k not in taken
-                 and re.search(rf"\b{name}\b(?! rate)", _words(heading))),
+                 and re.search(rf"\b{name}\b(?! rate)", heading.lower().replace("_", " "))),
                 key=lambda k: len(table.columns[k]),
             )
             for name in names
@@ -393,9 +419,8 @@ def _groups(table: Table, of_table: str) -> tuple[list[Group], list[str]]:
         if all(having):
             add("angles", [columns[0] for columns in having])
             break
-    warm = [k for k, name in enumerate(table.columns) if "temp" in name.lower()]
-    if warm:
-        add("temperature", warm[:1])
+    for k in [k for k, name in enumerate(table.columns) if "temp" in name.lower()][:1]:
+        add("temperature", [k])
     return groups, [name for k, name in enumerate(table.columns) if k not in taken]
 
 
@@ -419,8 +444,9 @@ def _chosen(groups: Sequence[Group]) -> tuple[dict[str, Group], list[str]]:
         chosen["accelerometer"] = whole[0]
     elif felt and "gravity" in chosen:
         pushed, gravity = felt[0], chosen["gravity"]
-        added = [np.interp(pushed.time, gravity.time, column) for column in gravity.values.T]
-        values = pushed.values + np.stack(added, axis=-1)
+        values = pushed.values + np.stack(
+            [np.interp(pushed.time, gravity.time, column) for column in gravity.values.T], axis=-1
+        )
         chosen["accelerometer"] = pushed._replace(values=values)
         remarks.append(
             f"{', '.join(pushed.names)} does not contain gravity; {', '.join(gravity.names)} was "
@@ -446,8 +472,8 @@ def unit_of_gravity(values: Array) -> tuple[str, float, float]:
 
 def unit_of_field(length: float) -> str:
     """Return the unit in which vectors of this length fit the Earth's field."""
-    units = [unit for unit, (low, high) in FIELD.items() if low <= length <= high]
-    return units[0] if units else "an unknown unit"
+    units = (unit for unit, (low, high) in FIELD.items() if low <= length <= high)
+    return next(units, "an unknown unit")
 
 
 def unit_of_rates(names: Sequence[str]) -> str:
@@ -459,6 +485,5 @@ def unit_of_rates(names: Sequence[str]) -> str:
 
 def unit_in_brackets(heading: str) -> str:
     """Return the unit of acceleration in a heading's brackets, if it is a known one."""
-    text = heading.lower().replace("^2", "²").replace("s2", "s²")
-    unit = re.search(r"[(\[]\s*(m/s²|m?g|cm/s²)\s*[)\]]", text)
-    return unit[1] if unit else ""
+    unit = _in_brackets(heading).strip().replace("^2", "²").replace("s2", "s²")
+    return unit if unit in GRAVITY else ""
