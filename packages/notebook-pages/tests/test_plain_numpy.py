@@ -74,6 +74,7 @@ np.where(v > 0, v, 0), np.isfinite(v), np.isclose(v, v + 1e-9), np.allclose(v, v
 np.cross(v, [1, 2, 3]), np.cross(A, v), np.trace(A), np.diag([1, 2]), np.diag(A)
 np.linalg.det(A).round(12), np.linalg.det(S).round(12)
 np.linalg.svd(A, compute_uv=False), np.linalg.svd(A, True, False)
+np.linalg.matrix_power(A, 5)
 np.stack([v, v], axis=-1), np.concatenate([A, A], axis=1), np.column_stack([v, v])
 np.broadcast_to(v, (2, 3))
 np.diff(v), np.diff(A, axis=0), np.diff(v, prepend=v[0]), np.cumsum(v)
@@ -86,7 +87,10 @@ v % 2, v // 1, v ** 2, 2 ** v, v / 3, 1 / v, -v, v == v, v > 1, ~(v > 1), (v > 0
 (v > 0) | (v < -1)
 np.array([[1.23456789e-7, 1], [100, 5]]), np.array([1.5, 100000.25]), np.array([123456789.0, 1.0])
 np.array([1e8])
-S, S[:, None] - S[None]
+S, S[:, None] - S[None], np.random.default_rng(3).normal(size=(2, 3))
+np.random.default_rng(0).uniform(-3, 3, 4)
+np.random.default_rng(2**70).normal(size=2)
+np.random.default_rng(7).normal(1.0, 2.0)
 A.trace(), A.transpose(), S.transpose(2, 0, 1).shape, A.copy()
 A.T.reshape(-1), A.T.ravel()
 """.strip().splitlines()
@@ -126,7 +130,9 @@ np.arccos(1.5)
 np.array([[1.0], [1, 2]])
 np.sum(v, dtype=int)
 A[[0, 1], [1, 2]]
-np.random.default_rng(1)
+np.random.default_rng(1).integers(3)
+np.random.default_rng()
+np.random.normal()
 np.linalg.eigh(A)
 np.percentile(v, 90)
 np.outer(v, v)
@@ -150,6 +156,7 @@ v[0].sum()
 A.flatten()
 np.around(123.456, -1)
 np.linalg.solve(A, v)
+np.random.default_rng(1).random()
 np.einsum('ij,j->i', A, v)
 float(np.array(0.5))
 [1, 2][np.array(1)]
@@ -286,6 +293,24 @@ def test_views_share_their_entries_and_copies_do_not(line):
     for name in theirs:
         if name not in ("np", "__builtins__"):
             assert repr(ours[name]) == repr(theirs[name]), name
+
+
+def test_normal_numbers_are_numpys_own():
+    ours, theirs = STAND_IN.random.default_rng(42), np.random.default_rng(42)
+    # Some from the tail, some from every layer.
+    drawn = [ours.normal(scale=0.5) for _ in range(30_000)]
+    assert drawn == [float(value) for value in theirs.normal(scale=0.5, size=30_000)]
+    assert max(map(abs, drawn)) / 0.5 > 3.66, "none from the tail"
+
+
+def test_the_real_generator_goes_on_where_the_stand_in_stopped(monkeypatch):
+    """Its numbers do not repeat, and what the stand-in could draw comes from it, too."""
+    monkeypatch.setattr(plain_numpy, "real", lambda: np)
+    drawn = []
+    for generator in (STAND_IN.random.default_rng(42), np.random.default_rng(42)):
+        drawn.append([generator.normal(), *generator.random(2), generator.normal()])
+        drawn[-1] += [*generator.integers(9, size=3), generator.uniform()]
+    assert drawn[0] == drawn[1]
 
 
 def test_sums_are_added_up_in_numpys_order():

@@ -103,7 +103,7 @@ def within(part):
 
 
 class Part(types.ModuleType):
-    """A replacement of ``numpy`` or ``numpy.linalg``.
+    """A replacement of ``numpy``, ``numpy.linalg`` or ``numpy.random``.
 
     Names that it does not offer come from the real one.
     """
@@ -128,7 +128,7 @@ class Part(types.ModuleType):
         return getattr(namesake, name)
 
 
-PARTS = {"linalg": Part("numpy.linalg", {})}
+PARTS = {"linalg": Part("numpy.linalg", {}), "random": Part("numpy.random", {})}
 STAND_IN = Part("numpy", OFFERED)
 OFFERED.update(PARTS)
 
@@ -195,7 +195,8 @@ def is_at_fault(error):
         for place in traceback.extract_tb(error.__traceback__)[-1:]
     )
     return looked_up or any(
-        f"'{kind.__name__}'" in str(error) for kind in (Array, Number, Integer, Truth, Part)
+        f"'{kind.__name__}'" in str(error)
+        for kind in (Array, Number, Integer, Truth, Generator, Part)
     )
 
 
@@ -1562,6 +1563,20 @@ def norm(x, *, axis=None, keepdims=False):
     return OFFERED["sqrt"](sum_(value * value, axis, keepdims=keepdims))
 
 
+@within("linalg")
+def matrix_power(a, n):
+    power, matrix, exponent = None, as_array(a), operator.index(n)
+    if exponent < 1 or matrix.ndim < 2 or matrix.shape[-1] != matrix.shape[-2]:
+        raise ValueError("positive powers of square matrices")
+    if exponent == 3:
+        return product(product(matrix, matrix), matrix)
+    while exponent:
+        exponent, odd = divmod(exponent, 2)
+        power = (matrix if power is None else product(power, matrix)) if odd else power
+        matrix = product(matrix, matrix) if exponent else matrix
+    return power
+
+
 class Quiet:
     """A context without effect: nothing here warns, and the real NumPy does whatever would."""
 
@@ -1576,6 +1591,193 @@ class Quiet:
 
 
 OFFERED["errstate"] = Quiet
+
+
+# --- random numbers: PCG64, seeded and shaped as NumPy does it (O'Neill 2014; Marsaglia and Tsang 2
+
+WORD, LONG, HUGE = 2**32 - 1, 2**64 - 1, 2**128 - 1
+
+
+def seeded(seed):
+    """Return the state and the increment of PCG64 for an integer, as NumPy's SeedSequence does."""
+    words = []
+    while seed or not words:
+        words.append(seed & WORD)
+        seed >>= 32
+    constant = 0x43B0D7E5
+
+    def hashed(value):
+        nonlocal constant
+        value ^= constant
+        constant = constant * 0x931E8875 & WORD
+        value = value * constant & WORD
+        return value ^ value >> 16
+
+    def mixed(x, y):
+        difference = (0xCA01F9DD * x - 0x4973F715 * y) & WORD
+        return difference ^ difference >> 16
+
+    pool = [hashed(words[k] if k < len(words) else 0) for k in range(4)]
+    for source, target in itertools.product(range(4), range(4)):
+        if source != target:
+            pool[target] = mixed(pool[target], hashed(pool[source]))
+    for word, target in itertools.product(words[4:], range(4)):
+        pool[target] = mixed(pool[target], hashed(word))
+    constant, parts = 0x8B51F9DD, []
+    for k in range(8):
+        value = pool[k % 4] ^ constant
+        constant = constant * 0x58F38DED & WORD
+        value = value * constant & WORD
+        parts.append(value ^ value >> 16)
+    first, second, third, fourth = (parts[k] | parts[k + 1] << 32 for k in range(0, 8, 2))
+    return first << 64 | second, third << 64 | fourth
+
+
+# NumPy's table of widths was computed with rounding. This is its largest error, in units in the
+# last place.
+ROUNDED = """
+    -9 -130 -40 -33 -28 -26 -26 -22 -22 -11 -10 -9 -8 -8 -8 -8 -8 -9 -8 -8 -9 -9 -9 -10 -9 -8 -8 -7
+    -8 -8 -8 -7 -8 -8 -7 -7 -8 -8 -6 -6 -6 -5 -5 -6 -5 -6 -5 -5 -5 -5 -6 -6 -3 -4 -4 -4 -4 -4 -4 -4
+    -3 -4 -3 -3 -3 -3 -4 -3 -4 -3 -3 -4 -3 -2 -2 -3 -3 -3 -4 -3 -3 -3 -3 -3 -3 -3 -2 -2 -2 -2 -2 -1
+    -1 -1 -1 -1 -2 -2 -1 -2 -2 -2 -2 -2 -1 -2 -2 -2 -2 -2 -3 -3 -3 -2 -2 -2 -1 -1 -2 -2 -2 -2 -1 -1
+    -1 -1 -1 -2 -2 -2 -1 -1 -2 -2 -2 -2 -2 -2 -2 -2 -3 -4 -4 -4 -3 -3 -3 -3 -2 -2 -2 -1 -1 -1 -1 -1
+    0 0 0 0 0 -1 -1 0 -1 0 -1 -1 -1 0 0 0 1 2 3 3 3 2 2 1 0 0 0 0 0 0 0 0 -1 0 0 0 0 0 0 -1 -1 -1 -1
+    -1 -2 -1 -2 -2 -2 -2 -2 -2 -1 -1 -1 -1 -1 0 -1 -1 -1 0 0 0 -1 -1 0 0 0 0 0 0 -1 0 0 -1 0 -1 -1
+    -1 -1 -1 -1 -1 -1 0 1 0 1 1 1 1 1 1 0 0 0 1 1 0
+""".split()
+
+
+@functools.cache
+def ziggurat():
+    """Return the 256 layers of equal area under the bell curve.
+
+    The results are their bounds as integers, their widths and their heights.
+    """
+    import mpmath
+
+    with mpmath.workdps(60):
+        start = mpmath.mpf("3.6541528853610087963519472518")
+        height = lambda x: mpmath.exp(-x * x / 2)  # noqa: E731
+        area = start * height(start) + mpmath.sqrt(mpmath.pi / 2) * mpmath.erfc(
+            start / mpmath.sqrt(2)
+        )
+        edges = [start]
+        for _ in range(254):
+            edges.append(mpmath.sqrt(-2 * mpmath.log(area / edges[-1] + height(edges[-1]))))
+        # From the widest layer, which represents the tail, to the narrowest.
+        edges = [area / height(start), *edges]
+        scale = mpmath.mpf(2) ** 52
+        widths = [edges[0], *reversed(edges[1:])]
+        bounds = [edges[1] / edges[0], 0, *(widths[k - 1] / widths[k] for k in range(2, 256))]
+        widths = [float(width / scale) for width in widths]
+        heights = [1.0, *(float(height(width * scale)) for width in widths[1:])]
+        bounds = [int(bound * scale) for bound in bounds]
+    return (
+        bounds,
+        [width + int(more) * math.ulp(width) for width, more in zip(widths, ROUNDED)],
+        heights,
+    )
+
+
+class Generator:
+    """``numpy.random.default_rng``, for uniform and normal numbers."""
+
+    def __init__(self, seed):
+        start, increment = seeded(seed)
+        self.increment = (increment << 1 | 1) & HUGE
+        self.state = self.increment
+        self.state = (self.state + start) & HUGE
+        self.step()
+        self.successor = None
+
+    def __getattr__(self, name):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self.as_real(), name)
+
+    def as_real(self):
+        """Return the real generator that goes on from this state; from then on it draws alone."""
+        if self.successor is None:
+            bits = real().random.PCG64(0)
+            inner = {"state": self.state, "inc": self.increment}
+            bits.state = {"bit_generator": "PCG64", "state": inner, "has_uint32": 0, "uinteger": 0}
+            self.successor = real().random.Generator(bits)
+        return self.successor
+
+    def step(self):
+        self.state = (self.state * 0x2360ED051FC65DA44385DF649FCCF645 + self.increment) & HUGE
+
+    def bits(self):
+        state = self.state = (
+            self.state * 0x2360ED051FC65DA44385DF649FCCF645 + self.increment
+        ) & HUGE
+        value, turn = (state >> 64 ^ state) & LONG, state >> 122
+        return (value >> turn | value << (64 - turn)) & LONG
+
+    def share(self):
+        return (self.bits() >> 11) * 2.0**-53
+
+    def bell(self):
+        bounds, widths, heights = ziggurat()
+        while True:
+            bits = self.bits()
+            layer, sign, whole = bits & 0xFF, bits >> 8 & 1, bits >> 9 & (2**52 - 1)
+            value = -whole * widths[layer] if sign else whole * widths[layer]
+            if whole < bounds[layer]:
+                return value
+            if layer == 0:
+                edge = 3.6541528853610088
+                while True:
+                    beyond = -math.log1p(-self.share()) * 0.27366123732975828
+                    if -2 * math.log1p(-self.share()) > beyond * beyond:
+                        return -(edge + beyond) if whole >> 8 & 1 else edge + beyond
+            elif (heights[layer - 1] - heights[layer]) * self.share() + heights[layer] < math.exp(
+                -0.5 * value * value
+            ):
+                return value
+
+    def drawn(self, draw, size):
+        if self.successor is not None:
+            raise NotImplementedError(
+                "NumPy's own generator has continued from this one, which can no longer be used"
+            )
+        if size is None:
+            return draw()
+        shape = shape_of((size,))
+        spend(4 * math.prod(shape))
+        return Array([draw() for _ in range(math.prod(shape))], shape, "f")
+
+    def uniform(self, low=0.0, high=1.0, size=None):
+        low, width = float(low), float(high) - float(low)
+        return self.drawn(lambda: low + width * self.share(), size)
+
+    def normal(self, loc=0.0, scale=1.0, size=None):
+        loc, scale = float(loc), float(scale)
+        if scale < 0:
+            raise ValueError("scale")
+        return self.drawn(lambda: loc + scale * self.bell(), size)
+
+
+def _from_here_on(name):
+    """Return a generator's method, with a fallback to a real one that goes on from its state."""
+
+    def find(numpy, arguments):
+        return lambda self, *rest, **options: getattr(self.as_real(), name)(*rest, **options)
+
+    return or_the_real_one(vars(Generator)[name], find)
+
+
+for _name in ("uniform", "normal"):
+    setattr(Generator, _name, _from_here_on(_name))
+
+
+@within("random")
+def default_rng(seed):
+    if isinstance(seed, Generator):
+        return seed
+    if not isinstance(seed, int) or isinstance(seed, bool) or seed < 0:
+        raise TypeError("not a whole number")
+    return Generator(int(seed))
 
 
 # --- writing ------------------------------------------------------------------------------------
