@@ -26,6 +26,7 @@ psi, theta, phi = SYMBOLS = sm.symbols("psi, theta, varphi")
 NAMES = ("psi", "theta", "varphi")
 NUMBERS = (0.4, -0.7, 1.1)
 all_sequences = pytest.mark.parametrize("sequence", SEQUENCES)
+some_sequences = pytest.mark.parametrize("sequence", ("zxy", "xzy", "zxz", "yxy"))
 
 
 # --- the same orientation -------------------------------------------------------------------------
@@ -139,7 +140,7 @@ def test_different(pair):
     assert same_orientation(*reversed(pair)) is False
 
 
-@pytest.mark.parametrize("count", range(1, 13))
+@pytest.mark.parametrize("count", (1, 2, 7, 12))
 def test_each_of_many_symbols_is_tried_with_both_signs(count):
     symbols = sm.symbols(f"a:{count}")
     for symbol in symbols:
@@ -311,7 +312,7 @@ def demand_truth(diagnosis, answer, angles, sequence):
     assert all(cause in str(diagnosis) for cause in diagnosis.causes)
 
 
-@all_sequences
+@some_sequences
 @pytest.mark.parametrize("mixup", SENTENCES)
 def test_symbolic_mixups_are_named(sequence, mixup):
     if sequence not in ("zxy", "yxy") and mixup in (
@@ -328,7 +329,7 @@ def test_symbolic_mixups_are_named(sequence, mixup):
     demand_truth(diagnosis, numerical(answer, NUMBERS), NUMBERS, sequence)
 
 
-@all_sequences
+@some_sequences
 def test_symbolic_wrong_sequence_is_named(sequence):
     others = [alternative for alternative in SEQUENCES if alternative != sequence]
     expected = composed(SYMBOLS, sequence)
@@ -365,7 +366,7 @@ def test_numerical_mixups_are_named(sequence):
     assert diagnose(expected.T, expected).causes == (SENTENCES["transpose"],)
 
 
-@all_sequences
+@some_sequences
 def test_nothing_is_named_for_other_answers(sequence):
     numbers, symbols = composed(NUMBERS, sequence), composed(SYMBOLS, sequence)
     for answer in random_dcms(20, 4):

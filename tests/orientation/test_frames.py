@@ -99,7 +99,7 @@ def complete(truth, names):
     return truth
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(5))
 def test_trees_of_every_shape_both_ways_and_as_reference_frames(seed):
     frames, names, truth = random_tree(seed)
     sympy_frames = frames.reference_frames()
@@ -428,21 +428,21 @@ def test_equation_tells_what_each_factor_is():
 # --- errors ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["", " ", 3, None])
-def test_names(name):
-    for pair in (("A", name), (name, "A")):
-        with pytest.raises(ValueError, match="the name of a frame must be a string such as"):
-            Frames().orient_axis(*pair, "z", 0.1)
-
-
-def test_a_frame_in_itself():
-    with pytest.raises(ValueError, match="A cannot be oriented with respect to itself"):
-        Frames().orient_axis("A", "A", "z", 0.1)
-
-
 @pytest.mark.parametrize(
     "orient, message",
     [
+        *(
+            (
+                lambda frames, pair=pair: frames.orient_axis(*pair, "z", 0.1),
+                "the name of a frame must be a string such as",
+            )
+            for name in ("", " ", 3, None)
+            for pair in (("A", name), (name, "A"))
+        ),
+        (
+            lambda frames: frames.orient_axis("A", "A", "z", 0.1),
+            "A cannot be oriented with respect to itself",
+        ),
         (lambda frames: frames.orient_axis("B", "A", "q", 1), "axis must be .* not 'q'"),
         (lambda frames: frames.orient_axis("B", "A", "z", np.nan), "angle is nan"),
         (
