@@ -358,15 +358,11 @@ class Sandbox:
                 self.process.wait()
         if self.errors is not None:
             self.errors.close()
-        self.control = self.process = self.errors = None
-        self.remove_base()
-
-    def remove_base(self) -> None:
         if self.base is not None:
             # The process that waits for the end removes it, too.
             with contextlib.suppress(FileNotFoundError):
                 scratch.remove_folder(self.base)
-            self.base = None
+        self.control = self.process = self.errors = self.base = None
 
     # -- one notebook
 
