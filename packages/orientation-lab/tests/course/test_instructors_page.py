@@ -81,7 +81,7 @@ def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
     (record,) = [
         record_of_class
         for record_of_class in store.all()
-        if record_of_class.student == "student-068"
+        if record_of_class.student == "student-075"
     ]
     journal.add(record, "unit-quaternions/two-ways", 0.5, who="Ann")
     (move,) = regrade(tmp_path / "out", show=output).moves
