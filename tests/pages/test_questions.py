@@ -123,8 +123,7 @@ def test_predictions_are_asked_open_or_left_out_as_the_reader_likes(context, sit
         assert page.locator(".covered").count() == (
             page.locator(COVERING).count() if folded is None else folded
         )
-        if way == "all open":
-            assert page.locator(f"#{label} .replies li.right").is_visible()
+        assert way != "all open" or page.locator(f"#{label} .replies li.right").is_visible()
     assert page.evaluate(KEPT).get("pages", {}).get(CHAPTER, {}).get("answers", {}) == {}
 
 
@@ -241,7 +240,9 @@ def test_right_answer_of_the_checker_counts(context, site):
 def test_paper_shows_the_answers(context, site):
     page = opened(context, site)
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    page.emulate_media(media="print")
     assert (
         page.locator("details.replies:not([open])").count() == 0
         and page.locator(".covered").count() == 0
+        and not page.get_by_label("Predictions").is_visible()
     )
