@@ -1,6 +1,7 @@
 """Decisions, appeals and changes of a rubric are events, and nothing counts before it was shown."""
 
 import csv
+import datetime
 import io
 import re
 import shutil
@@ -15,6 +16,7 @@ from test_review import Served
 from coursework.__main__ import main
 from coursework.authoring.author import AuthorError
 from coursework.authoring.source import read_source
+from coursework.grading.export import gradebooks
 from coursework.grading.grade import bring_in_decisions, grade, regrade
 from coursework.grading.judging import secret
 from coursework.grading.judging.journal import (
@@ -22,6 +24,7 @@ from coursework.grading.judging.journal import (
     UNDER_REVIEW,
     Collision,
     Journal,
+    Part,
 )
 from coursework.grading.review import Class
 from coursework.grading.running import Running
@@ -201,6 +204,36 @@ def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
         for row in csv.DictReader(book.read_text().splitlines())
     }
     assert marks == {"ada": "5", "ben": "5", "cem": "3"}
+
+
+def test_a_mark_is_that_of_the_day_it_is_asked_for(out):
+    record, journal = out.read("ben", "essays"), Journal(out.folder)
+    day = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC)
+    given = [
+        replace(one, when=f"2026-01-0{number}T00:00:00.000000+00:00")
+        for number, one in enumerate(journal.events, 1)
+    ]
+    journal.path.unlink()
+    (ben,) = [one for one in given if one.student == "ben"]
+    appeal = journal.appeal(record, SUM, "Right!", who="Ann")
+    journal.path.unlink()
+    months = [f"2026-0{month}-01T00:00:00.000000+00:00" for month in (2, 3)]
+    decided = journal.decision(record, SUM, 1, who="Ann", appeal=appeal.id)
+    parts = {**ben.marks, SUM: Part(2, 2, "decided")}
+    events = [
+        *given,
+        replace(appeal, when=months[0]),
+        replace(decided, when=months[1]),
+        replace(ben, id="later", when=months[1], points=2, marks=parts),
+    ]
+    Journal(out.folder).append(events)
+    with pytest.raises(gradebooks.CannotExport, match="no marks"):
+        gradebooks.Marks(out, as_of=day - datetime.timedelta(days=1))
+    for month, is_open in ((1, False), (2, True), (3, False)):
+        day = datetime.datetime(2026, month, 15, tzinfo=datetime.UTC)
+        marks = gradebooks.Marks(out, as_of=day)
+        assert marks.appeals("ben") == ([SUM] if is_open else [])
+        assert marks.points("ben") == 2 * (month == 3)
 
 
 def test_a_table_of_appeals_is_taken_in_once(begun, out, capsys):

@@ -450,3 +450,17 @@ def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, capsys):
             command(late)
     rules.write_text(rules.read_text().replace("a-day = 0.1", "a-day = 0.1\nmarked = 0.25"))
     assert filled(late) == ["4.8", "", "4.5"] and "unknown time" not in capsys.readouterr().out
+
+
+def test_marks_are_handed_on_as_of_a_date(late):
+    path = late.folder / "journal.jsonl"
+    (ann,) = [one for one in Journal(late.folder).events if one.student == "ann"]
+    path.unlink()
+    days = (("2026-10-01", 6), ("2026-10-20", 3), ("2026-12-20", 5))
+    Journal(late.folder).append(
+        replace(ann, id=day, when=f"{day}T12:00:00.000000+00:00", points=points)
+        for day, points in days
+    )
+    (late.folder / "term.toml").unlink()
+    for day, points in (("2026-10-19", "6"), ("2026-10-21", "3"), ("2026-12-24", "5")):
+        assert filled(late, "--as-of", day)[0] == points

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import getpass
 import sys
 from collections.abc import Callable, Sequence
@@ -14,6 +15,11 @@ if TYPE_CHECKING:
     from .judging.journal import Journal
     from .judging.laboratory import Agree, Laboratory
     from .store import Store
+
+
+def _moment(text: str) -> datetime.datetime:
+    """Read a time that a person typed, by the clocks of this machine if it has no time zone."""
+    return datetime.datetime.fromisoformat(text).astimezone()
 
 
 OUT = argument(
@@ -184,6 +190,13 @@ ARGUMENTS = {
                 "--filled",
                 metavar="FILE.csv",
                 help="file for the filled-in gradebook (default: FILE-filled.csv)",
+            ),
+            argument(
+                "--as-of",
+                metavar="TIME",
+                type=_moment,
+                help="export only marks that were decided and due by this time, such as "
+                "2026-12-01T12:00 (default: now)",
             ),
             DRY_RUN,
             argument(
@@ -488,6 +501,7 @@ def export(
     out: str,
     lms: str | None,
     filled: str | None,
+    as_of: datetime.datetime | None,
     dry_run: bool,
     overwrite: Sequence[str],
     assignment: str | None,
@@ -502,13 +516,13 @@ def export(
     store, book = Store(out), lms or ""
     target = str(gradebooks.place_of_filled(lms, filled)) if lms else ""
     for one, column in gradebooks.columns(lms, store, assignment) if lms else ():
-        marks = gradebooks.Marks(store, one)
+        marks = gradebooks.Marks(store, one, as_of=as_of)
         print(*gradebooks.fill(book, marks, column, target, overwrite, dry_run), sep="\n")
         # Fill the next column in the file that has this one.
         book = book if dry_run else target
     if dry_run:
         return
-    marks = gradebooks.Marks(store, assignment)
+    marks = gradebooks.Marks(store, assignment, as_of=as_of)
     if feedback:
         print(gradebooks.write_feedback(feedback, marks, store))
     if nbgrader:

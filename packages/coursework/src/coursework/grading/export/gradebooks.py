@@ -59,6 +59,9 @@ class Marks:
         Needed if there is more than one.
     term : Term, optional
         By default, the term in the folder.
+    as_of : datetime, optional
+        The time for which to take the marks and due dates. What was handed in is that of the
+        records.
 
     Attributes
     ----------
@@ -78,11 +81,12 @@ class Marks:
         store: Store,
         assignment: str | None = None,
         term: Term | None = None,
+        as_of: datetime.datetime | None = None,
     ) -> None:
         self.store = store
         self.term = term = term or term_of(store.folder)
         self.journal = Journal(store.folder)
-        self.standing = self.journal.standing()
+        self.standing, now = self.journal.standing(as_of), self.journal.standing()
         self.given = self.standing.given
         self.behind = 0
         self.records: list[Record] = []
@@ -91,11 +95,10 @@ class Marks:
             if assignment in (None, record.assignment) and key in self.given:
                 marks = {
                     name: (mark.points, mark.outcome)
-                    for name, mark in with_decisions(record, self.standing).marks.items()
+                    for name, mark in with_decisions(record, now).marks.items()
                 }
                 self.behind += marks != {
-                    name: (part.points, part.outcome)
-                    for name, part in self.given[key].marks.items()
+                    name: (part.points, part.outcome) for name, part in now.given[key].marks.items()
                 }
                 self.records.append(record)
         if not self.records:
@@ -122,7 +125,7 @@ class Marks:
         worth = {record.assignment: record.worth for record in self.records}
         refused = {one.student for one in refused_of(store)}
         self.results: dict[tuple[str, str], Result] = {}
-        now = datetime.datetime.now(datetime.UTC)
+        moment = as_of or datetime.datetime.now(datetime.UTC)
         for student in sorted(people | set(self.students)):
             own = {record.assignment: record for record in self.students.get(student, ())}
             sat = {
@@ -132,7 +135,7 @@ class Marks:
             }
             for name in self.assignments:
                 self.results[student, name] = result_of(
-                    student, name, own.get(name), term, worth, now, sat, refused
+                    student, name, own.get(name), term, worth, moment, sat, refused
                 )
         self.unknown = unknown_times(self.results.values(), term)
 

@@ -316,7 +316,7 @@ class Appealed:
 
 @dataclass(frozen=True)
 class Standing:
-    """The result of all events.
+    """The result of all events up to a time.
 
     Attributes
     ----------
@@ -427,9 +427,14 @@ class Journal:
 
     # -- reading the state
 
-    def standing(self) -> Standing:
-        """Return the result of the events that were read."""
-        made = _in_order(self.by_people)
+    def standing(self, until: datetime.datetime | None = None) -> Standing:
+        """Return the state now, or at a given time."""
+        events = [
+            one
+            for one in self.events
+            if until is None or datetime.datetime.fromisoformat(one.when) <= until
+        ]
+        made = _in_order(one for one in events if isinstance(one, ByPeople))
         decisions = {key: several[-1] for key, several in _not_taken_back(made).items()}
         worths = {(one.question, one.line): one for one in made if isinstance(one, Worth)}
         undone = {one.undoes for one in made if isinstance(one, Decision) and one.undoes}
@@ -448,9 +453,7 @@ class Journal:
             if by is not None and any(step.after == by.id for step in several):
                 by = None
             appeals.setdefault(several[0].key, []).append(Appealed(tuple(several), by))
-        given = {
-            (one.student, one.assignment): one for one in self.events if isinstance(one, Given)
-        }
+        given = {(one.student, one.assignment): one for one in events if isinstance(one, Given)}
         return Standing(decisions, appeals, worths, given)
 
     # -- entering events
