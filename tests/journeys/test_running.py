@@ -62,8 +62,11 @@ def test_a_page_in_a_closed_frame_says_that_the_frame_is_closed(page, site):
 
 def test_a_page_saved_with_what_its_scripts_added_has_each_button_once(page, site):
     page.goto(site + CHAPTER)
+    expect(page.locator("pre + .copybtn").nth(2)).to_be_attached()
+    counts = {name: page.locator(name).count() for name in (".copybtn", ".run-cell", ".live-bar")}
     page.set_content(page.content())
-    expect(page.locator(".run-cell")).to_have_count(page.locator("div.cell .cell_input").count())
+    for name, count in counts.items():
+        expect(page.locator(name)).to_have_count(count)
 
 
 class AsText(SimpleHTTPRequestHandler):

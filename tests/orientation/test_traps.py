@@ -14,10 +14,14 @@ from orientations import composed, rotation_error
 from scipy.spatial.transform import Rotation
 
 from orientation import (
+    Frames,
+    axis_angle_from_dcm,
     body_fixed_from_dcm,
     check_dcm,
+    dcm_from_axis_angle,
     dcm_from_body_fixed,
     dcm_from_quaternion,
+    diagnose,
     same_orientation,
     simple_dcm,
 )
@@ -70,6 +74,18 @@ def test_orient_axis_sorts_its_arguments_by_type():
     assert A.dcm(N) == B.dcm(N)
 
 
+def test_sympy_multiplies_turns_about_one_axis_out():
+    angles = sm.symbols("a:6")
+    chain, joined = [me.ReferenceFrame("F0")], Frames()
+    for k, angle in enumerate(angles):
+        chain.append(me.ReferenceFrame(f"F{k + 1}"))
+        chain[-1].orient_axis(chain[-2], chain[-2].z, angle)
+        joined = joined.orient_axis(f"F{k + 1}", f"F{k}", "z", angle)
+    theirs, ours = chain[-1].dcm(chain[0]), joined.dcm("F6", "F0")
+    assert sm.count_ops(theirs) > 20 * sm.count_ops(ours)
+    assert same_orientation(theirs, ours)
+
+
 def test_simplify_does_not_see_that_two_forms_are_equal():
     ours = dcm_from_body_fixed((psi, theta, phi), "zxz")
     rewritten = ours.applyfunc(lambda entry: entry.rewrite(sm.exp))
@@ -117,3 +133,54 @@ def test_scipy_snaps_to_gimbal_lock_near_it(sequence, lock):
         warnings.simplefilter("error")
         ours = body_fixed_from_dcm(dcm, sequence)
     assert rotation_error(composed(ours, sequence), dcm) < 1e-14
+
+
+# --- formulas -------------------------------------------------------------------------------------
+
+
+def test_division_by_the_scalar_part_loses_the_axis_near_half_a_turn():
+    dcm = dcm_from_axis_angle((1, 2, 3), np.pi - 1e-9)
+    scalar = np.sqrt(max(1 + np.trace(dcm), 0)) / 2
+    with np.errstate(all="ignore"):
+        by_scalar = (dcm[1, 2] - dcm[2, 1]) / (4 * scalar)
+    exact = 1 / np.sqrt(14)
+    assert not abs(by_scalar - exact) < 1e-3
+    assert abs(axis_angle_from_dcm(dcm)[0][0] - exact) < 1e-15
+
+
+# --- the two slips of the source chapter ----------------------------------------------------------
+
+
+def test_third_line_of_the_dot_product_block_is_about_a_z():
+    N, A = frames_of_sympy("NA")
+    A.orient_body_fixed(N, (psi, theta, phi), "zxy")
+    third_line = sum((A.z.dot(n) * n for n in (N.x, N.y, N.z)), me.Vector(0))
+    # Printed there with a_x on its left; it holds for a_z.
+    for left, holds in ((A.z, True), (A.x, False)):
+        components = (left - third_line).to_matrix(N)
+        at_numbers = components.subs({psi: 0.3, theta: 0.5, phi: 0.7}).evalf()
+        assert (max(map(abs, at_numbers)) < 1e-12) == holds
+
+
+def test_answer_of_the_exercise_on_orient_explicit_is_the_transpose_of_what_is_asked():
+    # Asked: orient D with respect to F about y through beta, that is, D_C_F.
+    D, F = frames_of_sympy("DF")
+    D.orient_axis(F, F.y, beta)
+    asked = D.dcm(F)
+    # Shown: a matrix called F_C_D, and F.orient_explicit(D, F_C_D.transpose()), then F.dcm(D).
+    shown = sm.Matrix(
+        [[sm.cos(beta), 0, -sm.sin(beta)], [0, 1, 0], [sm.sin(beta), 0, sm.cos(beta)]]
+    )
+    D, F = frames_of_sympy("DF")
+    F.orient_explicit(D, shown.transpose())
+    assert F.dcm(D) == shown
+    assert D.dcm(F) == asked.T != asked
+    assert diagnose(D.dcm(F), asked).causes == (
+        "it is the transpose, which is the inverse orientation",
+        "beta has the wrong sign",
+    )
+    # Right:
+    D, F = frames_of_sympy("DF")
+    D_C_F = shown
+    F.orient_explicit(D, D_C_F)
+    assert D.dcm(F) == asked == simple_dcm("y", beta)

@@ -438,6 +438,21 @@ def test_one_command_brings_the_wheels_once_and_checks_each(made_wheels, tmp_pat
     assert not (target / numpy).exists()
 
 
+def test_one_setting_puts_them_beside_the_pages(monkeypatch):
+    """Set it like the workflow that publishes, which uses the makefile's command and folder."""
+    monkeypatch.setenv("BOOK_NUMPY", "_build/numpy")
+    assert runtime.numpy_setting("official") == "_build/numpy"
+    monkeypatch.setenv("BOOK_NUMPY", "")
+    assert runtime.numpy_setting("official") == "official"
+    assert "notebook_pages.live.fetch _build/numpy" in (REPOSITORY / "Makefile").read_text("utf8")
+    steps = (REPOSITORY / ".github" / "workflows" / "publish.yml").read_text("utf8")
+    assert (
+        steps.index("run: make numpy")
+        < steps.index("run: make take-away")
+        < steps.index("BOOK_NUMPY: _build/numpy")
+    )
+
+
 @pytest.mark.parametrize("setting", ["off", False])
 def test_numpy_off(setting, tmp_path):
     assert runtime.numerical_packages(setting, tmp_path, runtime.official_lock(), "unused") == {}
@@ -605,10 +620,10 @@ FAILURES = [
 
 @pytest.mark.parametrize(("code", "words"), FAILURES)
 def test_an_error_is_told_in_words_and_python_goes_on(shared, code, words):
-    """The next error comes from the same Python."""
     text = shared.try_code(3, code)
     assert "error" in shared.words() and all(re.search(part, text) for part in words)
     assert len(text) < 5000 and not re.search("session|pyodide|ast.py", text)
+    assert "still here" in shared.try_code(3, "print('still here')")
 
 
 def test_endless_printing_is_cut(shared):

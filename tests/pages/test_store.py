@@ -66,6 +66,29 @@ def test_three_tabs_that_write_at_one_moment_lose_nothing(context, site):
     assert tries["shared/one"]["outcome"] == "wrong"
 
 
+TYPE = """([moment, cell, code]) => { window.over = new Promise((done) => setTimeout(() => {
+  document.querySelectorAll("div.cell")[cell - 1].querySelector(".cm-content").focus();
+  document.execCommand("selectAll");
+  document.execCommand("insertText", false, code);
+  done();
+}, moment - Date.now())); }"""
+
+
+def test_three_tabs_that_type_in_one_cell_at_one_moment_lose_nothing(context, site):
+    tabs = [Tab(context, site).edit() for _ in range(3)]
+    moment = (time.time() + 2) * 1000
+    for number, tab in enumerate(tabs):
+        tab.page.evaluate(TYPE, [moment, ANSWER, f"tab = {number}"])
+    for tab in tabs:
+        tab.page.evaluate("() => window.over")
+    tabs[0].page.wait_for_function(
+        "(texts) => texts.every((text) => "
+        "JSON.stringify(Object.values(localStorage)).includes(text))",
+        arg=[f"tab = {number}" for number in range(3)],
+    )
+    assert [tab.errors for tab in tabs] == [[], [], []]
+
+
 def test_what_a_run_takes_away_of_its_own_stays_away(context, site):
     """Only text that another tab has written meanwhile is joined; a reviewed mistake is gone."""
     page = opened(context, site)

@@ -18,6 +18,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from notebook_pages import build as book
 from notebook_pages import paths, unchanged
 from notebook_pages.paths import NODE, NODE_MODULES, WEBSITE, fingerprint, let_everybody_read
+from notebook_pages.serve import Handler
 
 FIGURE = '''
 class Figure:
@@ -293,6 +294,10 @@ def test_fingerprint_follows_every_file(tmp_path):
     assert changed != before
     file.rename(tmp_path / "inner" / "other.py")
     assert fingerprint(tmp_path) not in (before, changed)
+
+
+def test_modules_are_served_as_javascript():
+    assert Handler.extensions_map[".mjs"] == "text/javascript"
 
 
 def test_formulas_are_set_by_one_process_which_is_missed_when_it_ends():

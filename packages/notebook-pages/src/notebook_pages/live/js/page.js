@@ -16,15 +16,15 @@
     }
   };
 
-  document.querySelectorAll(".live-bar, .run-cell, .copybtn").forEach((old) => old.remove()); // of a page that was saved
+  // A page that was saved holds what scripts added to it. They have put new buttons before the old ones.
+  document.querySelectorAll(".live-bar, .run-cell, .copybtn + .copybtn").forEach((old) => old.remove());
   // The bar at the bottom of the window, which covers part of the page, so that no line moves.
   const bar = make("section", { className: "live-bar", hidden: true });
   bar.setAttribute("aria-label", "Python on this page");
-  const words = make("p", { id: "live-words" });
+  const words = make("p", { id: "live-words" }), bytes = make("span", { className: "live-bytes" });
   words.setAttribute("role", "status");
   const choices = make("span", { className: "live-choices" }), progress = make("progress", { hidden: true });
   progress.setAttribute("aria-label", "Loading Python");
-  const bytes = make("span", { className: "live-bytes" });
   bytes.setAttribute("aria-hidden", "true"); // as the words are spoken once, but the numbers change all the time
   const keys = make("p", { id: "live-keys" }, "Shift+Enter runs a cell, Escape leaves it.");
   const close = make("button", { type: "button", className: "live-close", title: "Close this bar" }, "×");
@@ -66,7 +66,7 @@
 
   // Why this page cannot run code or store anything, if so: its origin is not shared by its own files.
   const apart = self.origin !== "null" ? "" : location.protocol === "file:"
-    ? "A page opened from disk cannot run code. Open it at its address in the network or, in the folder of the whole book, run python serve.py and open the address that it prints."
+    ? "A page opened from disk cannot run code. Open it online at its address or, in the folder of the whole book, run python serve.py and open the address that it prints."
     : "The page around this one blocks its files (its frame has a sandbox without allow-same-origin), so no code runs here. Open this page in its own tab.";
   document.querySelector("a.open-notebook")?.addEventListener("click", (event) => {
     if (!apart) return;
