@@ -113,14 +113,23 @@ VERSION = re.compile(r'^__version__ = "(.*)"$', re.M)
 
 
 def own_wheels(course: Course, folder: str | Path) -> list[Path]:
-    """Return the wheels that the course builds for its students itself, if it does."""
+    """Return the wheels for students that the function in course.toml builds."""
     try:
-        return list(resolve_name(course.package)(folder)) if course.package else []
-    except (ImportError, AttributeError) as error:
+        build = resolve_name(course.package)
+        if not callable(build):
+            raise ValueError("it is not a function")
+    except (ImportError, AttributeError, ValueError) as error:
         raise AuthorError(
             f"course.toml says package = {course.package!r}, but we cannot use it: {error}. Write "
-            "MODULE:FUNCTION, where Python can import the module, for example from your package."
+            "MODULE:FUNCTION, and install the package that contains the module here."
         ) from None
+    wheels = list(build(folder) or ())
+    if not wheels:
+        raise AuthorError(
+            f"{course.package} in course.toml returned no wheels for students. It has to return "
+            "the paths of those that it builds. Perhaps it ends without `return`."
+        )
+    return wheels
 
 
 def archive(course: Course, target: str | Path | None = None) -> Path:
@@ -135,10 +144,10 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
     target = Path(target or course.archive)
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
-        packages = {
-            path.name: path.read_bytes()
-            for path in own_wheels(course, folder) or [wheel("coursework-checks", folder)]
-        }
+        wheels = (
+            own_wheels(course, folder) if course.package else [wheel("coursework-checks", folder)]
+        )
+        packages = {path.name: path.read_bytes() for path in wheels}
     files = {
         "README.txt": README.format(title=course.title).encode("utf8"),
         # The manifest lists the digest of each file.
