@@ -143,8 +143,16 @@ def test_what_is_missing_counts_once_it_is_due(rules):
     assert result(rules(), half, worth={"turns": 6})[0]["axes"].state == "not due"
 
 
-def test_a_systems_word_without_a_time_costs_nothing_and_is_said(rules):
-    found, _ = result(rules(), record(6, late=True))
+@pytest.mark.parametrize(
+    "text, when",
+    [
+        (RULES, ""),
+        # There is nothing to compare the time with.
+        (RULES.replace("due = 2026-10-05T23:59:00\n", ""), "2026-10-05T12:00:00"),
+    ],
+)
+def test_a_systems_word_alone_costs_nothing_and_is_said(rules, text, when):
+    found, _ = result(rules(text), record(6, when=when, late=True))
     assert found["turns"].late and found["turns"].penalty == 0
 
 

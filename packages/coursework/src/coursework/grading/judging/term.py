@@ -792,6 +792,8 @@ def result_of(
         elif due is not None:
             delayed = delay(when, due, term.time_zone)
             penalty, late = term.late.penalty(delayed), delayed > term.late.grace
+        else:
+            late = record.late
     if term.is_excused(student, name):
         state, late, penalty = EXCUSED, False, 0.0
     full = record.worth if record else worth.get(name, 0)
