@@ -898,7 +898,7 @@ def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(
     after = (tmp_path / "book-filled.csv").read_bytes().decode()
     assert written in after
     assert path.read_bytes() == before.encode()
-    book, filled = gradebooks.Gradebook(before.encode()), gradebooks.Gradebook(after.encode())
+    book, filled = map(gradebooks.Gradebook, (path, tmp_path / "book-filled.csv"))
     place = gradebooks._column(book, gradebooks._system(book), None)
     for (old, old_end), (new, new_end) in zip(book.lines, filled.lines, strict=True):
         assert (
@@ -1025,8 +1025,9 @@ def test_a_gradebook_of_canvas_with_names_in_two_columns_and_other_numbers(marks
         b"\xef\xbb\xbf" + CANVAS.encode(),
     ],
 )
-def test_a_gradebook_that_is_not_changed_is_the_same_bytes(data):
-    assert bytes(gradebooks.Gradebook(data)) == data
+def test_a_gradebook_that_is_not_changed_is_the_same_bytes(tmp_path, data):
+    (tmp_path / "book.csv").write_bytes(data)
+    assert bytes(gradebooks.Gradebook(tmp_path / "book.csv")) == data
 
 
 def test_two_of_one_name_are_not_filled_in(marks, tmp_path):
@@ -1045,7 +1046,7 @@ def test_two_of_one_name_are_not_filled_in(marks, tmp_path):
             "Student,ID,SIS User ID,SIS Login ID,Section,Turns (1),Axes (2)\nA,1,,,,,\n",
             "'Turns (1)', 'Axes (2)'",
         ),
-        ("Student,ID\n", "no students"),
+        ("Student,ID\n", "book.csv has no students"),
     ],
 )
 def test_a_gradebook_that_cannot_be_filled_is_said(marks, tmp_path, header, message):

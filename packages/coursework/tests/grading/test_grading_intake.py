@@ -423,16 +423,20 @@ def test_rosters_of_many_systems_are_read(box, tmp_path, text, name, student):
     assert found == ({name: student} if student else {})
 
 
-def test_a_roster_that_cannot_be_used_is_said(tmp_path):
-    for text, why in (
+@pytest.mark.parametrize(
+    "text, why",
+    [
         ("student\na\na\n", "line 3: 'a' is listed twice"),
         ("x,y\n1,2\n", "lists no students"),
-        ("PK\x03\x04...", "such as .xlsx or .ods. Open it in the spreadsheet, save it as CSV"),
+        ("PK\x03\x04...", "roster.csv is a spreadsheet's own file.* save it as CSV"),
+        ("\xd0\xcf\x11\xe0...", "roster.csv is a spreadsheet's own file, such as .xlsx, .xls"),
         ('student,name\n1,"Ann\n2,Bob\n', "line 2: we cannot read this line"),
-    ):
-        (tmp_path / "roster.csv").write_text(text)
-        with pytest.raises(BadRoster, match=why):
-            Roster(tmp_path / "roster.csv")
+    ],
+)
+def test_a_roster_that_cannot_be_used_is_said(tmp_path, text, why):
+    (tmp_path / "roster.csv").write_text(text, "latin-1")
+    with pytest.raises(BadRoster, match=why):
+        Roster(tmp_path / "roster.csv")
     with pytest.raises(BadRoster, match="cannot read the table"):
         Roster(tmp_path / "none.csv")
 

@@ -211,13 +211,14 @@ class Field(NamedTuple):
 class Gradebook:
     """A learning management system's table, in which single cells can be changed."""
 
-    def __init__(self, data: bytes, names: Mapping[str, str] | None = None) -> None:
-        self.encoding, self.mark = encoding_of(data)
+    def __init__(self, path: Path, names: Mapping[str, str] | None = None) -> None:
+        data = path.read_bytes()
+        self.encoding, self.mark = encoding_of(path, data)
         text = data[len(self.mark) :].decode(self.encoding)
         self.delimiter = max(",;\t", key=text.split("\n", 1)[0].count)
         self.lines = _split(text, self.delimiter)
         if len(self.lines) < 2:
-            raise CannotExport("The gradebook has no students.")
+            raise CannotExport(f"The gradebook {path} has no students.")
         self.header = [field.says.strip() for field in self.lines[0][0]]
         known, self.no = in_english(self.header)
         self.ours = known | {
@@ -387,7 +388,7 @@ def columns(
 
 def _read(path: str | Path, names: Mapping[str, str]) -> Gradebook:
     try:
-        return Gradebook(Path(path).read_bytes(), names)
+        return Gradebook(Path(path), names)
     except (OSError, UnicodeDecodeError) as error:
         raise CannotExport(f"We cannot read {path}: {error}.") from None
 

@@ -208,7 +208,7 @@ class Roster:
 def cells_in(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """Return a table's column names in lower case, and the number and cells of each line."""
     data = path.read_bytes()
-    encoding, mark = encoding_of(data)
+    encoding, mark = encoding_of(path, data)
     text = data[len(mark) :].decode(encoding)
     # Split lines only where CSV does. Students choose their names, and with a rarer line separator
     # in them they could begin a line of their own.
@@ -244,11 +244,11 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
         yield number, dict(zip(header, cells))
 
 
-def encoding_of(data: bytes) -> tuple[str, bytes]:
+def encoding_of(path: Path, data: bytes) -> tuple[str, bytes]:
     """Return the encoding of a table from a spreadsheet or a system, and its byte order mark."""
-    if data.startswith(b"PK\x03\x04"):
+    if data.startswith((b"PK\x03\x04", b"\xd0\xcf\x11\xe0")):
         raise BadRoster(
-            "This table is a spreadsheet's own file, such as .xlsx or .ods. Open it in the "
+            f"{path} is a spreadsheet's own file, such as .xlsx, .xls or .ods. Open it in the "
             "spreadsheet, save it as CSV, and use that file."
         )
     for mark, encoding in (
