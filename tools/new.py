@@ -132,11 +132,16 @@ def question_cells(name, kind, example):
     ]
 
 
-def asked(example):
-    return f"Set `{example.variable}` to {example.is_}."
+def renamed(example, ending):
+    """Return an example with another name for its answer, as no two of a notebook may be equal."""
+    return example._replace(
+        variable=f"{example.variable}_{ending}",
+        code=re.sub(rf"\b{example.variable}\b", rf"\g<0>_{ending}", example.code),
+        is_=example.is_.replace(f"`{example.variable}", f"`{example.variable}_{ending}"),
+    )
 
 
-def chapter_cells(name, title):
+def chapter_cells(name, title, example):
     return [
         markdown(
             f"(chapter-{name})=\n# {title}",
@@ -171,12 +176,11 @@ def chapter_cells(name, title):
             "## Exercises",
             f"```{{exercise}} {TO_BE_WRITTEN}\n:label: exercise-{name}\n"
             f"{TO_BE_WRITTEN}: the question. "
-            f"{asked(EXAMPLES['expression'])}\n```",
+            f"Set `{example.variable}` to {example.is_}.\n```",
         ),
         code(
-            f"from coursework import check\n\n{EXAMPLES['expression'].variable} = ...  # your "
-            "answer\n"
-            f"check('chapters/{name}', {EXAMPLES['expression'].variable})"
+            f"from coursework import check\n\n{example.variable} = ...  # your answer\n"
+            f"check('chapters/{name}', {example.variable})"
         ),
         markdown(
             f"Worked solution: {{ref}}`in the appendix <solution-{name}>`. More questions: "
@@ -194,18 +198,13 @@ def exercise_cells(notebook, question, title, kind):
         cell.cell_type == "markdown" and cell.source.startswith("## ") for cell in notebook.cells
     )
     example = EXAMPLES[kind]
-    # Each answer of a notebook has a different name.
     if any(f", {example.variable})\n" in cell.source for cell in notebook.cells):
-        example = example._replace(
-            variable=f"{example.variable}_{number}",
-            code=re.sub(rf"\b{example.variable}\b", rf"\g<0>_{number}", example.code),
-            is_=example.is_.replace(f"`{example.variable}", f"`{example.variable}_{number}"),
-        )
+        example = renamed(example, number)
     return [
         markdown(
             f"## {number}. {title}",
             f"{TO_BE_WRITTEN}: the question, with symbols, frames in order, units of angles.",
-            asked(example),
+            f"Set `{example.variable}` to {example.is_}.",
         ),
         *question_cells(question, kind, example),
     ]
@@ -266,23 +265,27 @@ def new_chapter(name, title, after):
     add_line(Path("_toc.yml"), f"- file: exercises/{after}", f"- file: exercises/{name}")
     add_line(INDEX, f"- {{doc}}`{after}`", f"- {{doc}}`{name}`")
     add_spoken(name, after)
-    exercises = nbformat.v4.new_notebook(metadata=METADATA)
-    exercises.cells = [
-        markdown(
-            f"# Exercises: {title}",
-            f"After the chapter *{title}*. {TO_BE_WRITTEN}: what applies to all of them.",
-        ),
-        code("import sympy as sm\n\nfrom coursework import check"),
-    ]
+    exercises = nbformat.v4.new_notebook(
+        cells=[
+            markdown(
+                f"# Exercises: {title}",
+                f"After the chapter *{title}*. {TO_BE_WRITTEN}: what applies to all of them.",
+            ),
+            code("import sympy as sm\n\nfrom coursework import check"),
+        ],
+        metadata=METADATA,
+    )
     exercises.cells += exercise_cells(exercises, f"{name}/first", TO_BE_WRITTEN, "expression")
     nbformat.write(normalise(exercises), source)
-    new = nbformat.v4.new_notebook(cells=chapter_cells(name, title), metadata=METADATA)
+    # The questions of all chapters stand in one notebook.
+    example = renamed(EXAMPLES["expression"], name.replace("-", "_"))
+    new = nbformat.v4.new_notebook(cells=chapter_cells(name, title, example), metadata=METADATA)
     nbformat.write(normalise(new), chapter)
     add_cells(
         CHAPTERS_SOURCE,
         [
             markdown(f"## {title}"),
-            *question_cells(f"chapters/{name}", "expression", EXAMPLES["expression"]),
+            *question_cells(f"chapters/{name}", "expression", example),
         ],
     )
     add_cells(

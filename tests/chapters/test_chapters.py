@@ -148,8 +148,9 @@ def test_a_new_chapter_has_all_its_parts(book):
     for cell in nbformat.read("chapters/chapter-of-the-tests.ipynb", as_version=4).cells:
         if "check(" not in cell.source and cell.cell_type == "code":
             exec(cell.source, {})
-    again = make("chapter", "chapter-of-the-tests", "Chapter of the tests")
-    assert again.returncode != 0 and "already exists; nothing was changed" in again.stderr
+    # The question of the first one, which is not written yet, has another name than this one's.
+    new.new_chapter("next-of-the-tests", "Next of the tests", None)
+    assert "chapters/next-of-the-tests" in read_source(chapters.CHAPTERS_SOURCE).questions
 
 
 @pytest.mark.parametrize(
@@ -160,6 +161,7 @@ def test_a_new_chapter_has_all_its_parts(book):
             "NAME made of lower-case letters and hyphens",
         ),
         (("chapter", "chapter-of-the-tests", ""), "a TITLE"),
+        (("chapter", "gimbal-lock", "Gimbal lock"), "already exists; nothing was changed"),
         (
             ("chapter", "chapter-of-the-tests", "Chapter of the tests", "--after", "gimbals"),
             "no chapter 'gimbals'; it has",
