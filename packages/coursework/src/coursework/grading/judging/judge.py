@@ -29,7 +29,8 @@ from .contract import Contract
 MOST_SECONDS = 10
 #: Bytes that the process may take in addition to what it begins with.
 MOST_MEMORY = 1 << 30
-#: Seconds without a message, on a machine however busy, after which we end the process.
+#: Seconds without the beginning of a message, on a machine however busy, after which we end the
+#: process. The rest of a message follows at once, since the judge sends only complete ones.
 LONGEST_SILENCE = 60 * MOST_SECONDS
 
 
