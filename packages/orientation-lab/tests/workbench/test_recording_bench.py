@@ -200,13 +200,19 @@ def test_many_forms_hold_one_recording(form):
 
 #: Headings of further loggers, with the names of their tables.
 HEADINGS = {
-    "gyroscope": [("w_RS_S_x [rad s^-1]", "data"), ("gyro_rad[0]", ""), ("wx(deg/s)", "")],
+    "gyroscope": [
+        ("w_RS_S_x [rad s^-1]", "data"),
+        ("gyro_rad[0]", ""),
+        ("wx(deg/s)", ""),
+        ("roll_rate_dps", ""),
+    ],
     "accelerometer": [
         ("a_RS_S_x [m s^-2]", "data"),
         ("accelerometer_m_s2[0]", ""),
         ("Beschleunigung x (m/s^2)", "Rohdaten"),
         ("x-axis (g)", "MetaWear_2024_Accelerometer_100.000Hz_1.7.3"),
         ("gFx", ""),
+        ("acc_x_m/s^2", ""),
     ],
     "magnetometer": [("magnetometer_ga[0]", ""), ("MAGNETIC FIELD X (μT)", ""), ("hx(uT)", "")],
     "linear acceleration": [("LINEAR ACCELERATION X (m/s²)", ""), ("linAccX", "")],
@@ -218,7 +224,54 @@ HEADINGS = {
 def test_headings_of_further_loggers_are_known(kind):
     for heading, table in HEADINGS[kind]:
         stem, axis = _stem_and_axis(heading)
-        assert axis in "x0" and _kind(stem, heading, table) == kind, heading
+        assert axis in ("x", "0") and _kind(stem, heading, table) == kind, heading
+
+
+KINDS = ("gyro", "accel")
+SIX = "gyr_x,gyr_y,gyr_z,acc_x,acc_y,acc_z"
+
+
+def lines(time, names="time", count=300, columns=7, head=""):
+    """Rows of a time, given as a function of the row's number, and of other numbers."""
+    values = np.random.default_rng(1).normal(size=(count, columns - 1))
+    rows = [",".join([str(time(k)), *map("{:.4f}".format, row)]) for k, row in enumerate(values)]
+    return "\n".join([head, names, *rows])
+
+
+#: What the bench says of times and unused columns: the text, and what its content must contain.
+SAID = [
+    (lines(lambda k: 40 * k, f"time,{SIX}", head="Sample Rate: 100 Hz"), "time, in ms|"),
+    (lines(lambda k: 10000 * k, f"time (ms),{SIX}"), "in us (its heading says ms)"),
+    (lines(lambda k: f"9:05:{k / 100:06.3f}", f"time,{SIX}"), "time, in s|"),
+    (lines(lambda k: f"0:00:{k / 100:06.3f}", f"time,{SIX}"), "time, in s|"),
+    (lines(lambda k: f"9:05:{k // 10:02}", f"time,{SIX}"), "time has the same value as in the row"),
+    (lines(lambda k: f"9:05:{k // 10:02} AM", f"time,{SIX}"), "no column gives each row's time"),
+    (lines(lambda k: k / 100, f"time (s),{SIX}", head="Sample rate: ..Hz"), "time (s), in s|"),
+    # A log of two kinds of lines, between spaces, with an empty line.
+    (
+        "#gyro time x y z\n#accel time x y z\n\n"
+        + "".join(f"{one} {k / 100} {k % 7} {k % 5} 9\n" for k in range(99) for one in KINDS),
+        "time, in s|",
+    ),
+    (lines(lambda k: f"label{k // 10}", f"which,{SIX}", 6000), "accelerometer"),
+    (
+        lines(lambda k: k, f"time (ms),{SIX},motionYaw(rad),motionPitch(rad),rollDeg", columns=10),
+        "'angles'",
+    ),
+    (
+        lines(lambda k: k, f"time (ms),{SIX},AngleX(deg),AngleY(deg),AngleZ(deg)", columns=10),
+        "AngleZ(deg) (if these are angles, name them: --columns 'roll=8 pitch=9 yaw=10')",
+    ),
+    (lines(lambda k: k, f"time (ms),{SIX},attempt,template", columns=9), "attempt, template"),
+    (lines(lambda k: k, f"time (ms),{SIX},imuTemp", columns=8), "'temperature'"),
+]
+
+
+@pytest.mark.parametrize(("text", "words"), SAID)
+def test_times_and_further_columns_are_told(text, words):
+    found = read_content(text, "recording")
+    said = f"{found.clock}|{', '.join(found.unused)}|{list(found.groups)}"
+    assert words in said and {"gyroscope", "accelerometer"} <= set(found.groups), said
 
 
 UNITS = (
@@ -452,6 +505,7 @@ def test_a_magnetometer_without_a_gyroscope_is_put_right_by_lengths_or_refused()
         names = ["time (s)", *NAMES[4:]]
         lines = [",".join(f"{value:.5f}" for value in row) for row in rows]
         found = examine("\n".join([",".join(names), *lines]), judged=False)
+        assert "no heading names a gyroscope" in str(found)
         if poses < 9:
             assert found.light("offset of the magnetometer") in ("cannot tell", "wrong")
             continue

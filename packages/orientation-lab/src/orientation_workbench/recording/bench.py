@@ -147,7 +147,8 @@ class _Bench:
 
     def _missing(self, kind: str) -> None:
         advice = f"If the file has one, name its columns: --columns {kind}=2-4."
-        self.say(kind, UNKNOWN, "no heading names it", {}, advice)
+        article = "an" if kind == "accelerometer" else "a"
+        self.say(kind, UNKNOWN, f"no heading names {article} {kind}", {}, advice)
 
     # --- what is in it --------------------------------------------------------------------------
 

@@ -45,7 +45,7 @@ BESIDE = "cal uncal raw ln wr adc smooth element axis value".split()
 UNIT_WORDS = "m s s2 ms2 mps2 rad deg dps per sec g mg ga ut micro t".split()
 CLOCK = r"\btime|stamp|elapsed|clock|\bt$|\bsec"
 COUNTER = r"counter|packet|number|index|frame|iteration|tick|\bsample\b(?! time)|\bcount$|\bid$"
-RATE = r"(?:rate|frequency)[\W_]*([\d.]+)\s*hz"
+RATE = r"(?:rate|frequency)[\W_]*(\d+(?:\.\d+)?)\s*hz"
 #: The kinds of columns that the bench can use.
 PLAYED = ("accelerometer", "magnetometer", "gyroscope", "quaternion", "angles", "temperature")
 UNITS_OF_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
@@ -271,7 +271,8 @@ def _words(heading: str) -> str:
     >>> _words('Shimmer_Gyro_X [deg/s]'), _words('gyroADC[0]'), _words('AccelXMps2')
     ('shimmer gyro x', 'gyro adc 0', 'accel x mps2')
     """
-    bare = re.sub(r"[(\[](?![0-4wxyz][)\]]).*?[)\]]", "", heading)
+    # The power of a unit, such as ^2, is not the number of an axis.
+    bare = re.sub(r"[(\[](?![0-4wxyz][)\]]).*?[)\]]|\^-?\d", "", heading)
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", bare)
     return " ".join(re.findall(r"[a-z0-9]+", apart.lower()))
 
@@ -284,7 +285,8 @@ def _in_brackets(heading: str) -> str:
 
 def _unit_of_time(heading: str) -> float | None:
     """Return the unit in a heading's brackets, or its last word, in seconds."""
-    return UNITS_OF_TIME.get(_in_brackets(heading) or _words(heading).split(" ")[-1])
+    last = "" if re.search(r"/ ?s\b", heading) else _words(heading).split(" ")[-1]
+    return UNITS_OF_TIME.get(_in_brackets(heading) or last)
 
 
 def _clock(table: Table) -> Clock:
@@ -316,7 +318,7 @@ def _clock(table: Table) -> Clock:
         words = "no column gives each row's time" + "".join(
             f" ({columns[k]} runs backwards {number_of((steps[:, k] < 0).sum(), 'time')})"
             if (steps[:, k] < 0).any()
-            else f" ({columns[k]} repeats the row before "
+            else f" ({columns[k]} has the same value as in the row above "
             f"{number_of((steps[:, k] == 0).sum(), 'time')}; was it rounded?)"
             for k in named
             if (steps[:, k] <= 0).any()
@@ -328,9 +330,12 @@ def _clock(table: Table) -> Clock:
     step = float(np.median(steps[:, k][steps[:, k] > 0]))
     if counts[k] or (step == 1 and not units[k]):
         return Clock(k, values[:, k], f"{columns[k]}, which only counts samples", True, rate)
-    scale = units[k]
-    if not scale and rate:
-        scale = float(10.0 ** -np.round(np.log10(rate * step)))
+    named_unit = units[k]
+    # No instrument's steps have a size outside these limits, whatever the heading says.
+    scale = named_unit if named_unit and 1e-5 < step * named_unit < 5 else None
+    power = np.log10(rate * step) if rate else 0.5
+    if not scale and abs(power - np.round(power)) < 0.05:
+        scale = float(10.0 ** -np.round(power))
     elif not scale:
         scale = next((size for size in (1.0, 1e-3, 1e-6, 1e-9) if 2e-4 < step * size <= 0.5), None)
     if scale is None:
@@ -338,8 +343,11 @@ def _clock(table: Table) -> Clock:
             f"{table.name}: column {columns[k]} looks like a time, but its steps of {step:g} do "
             f"not fit any unit. Give the unit, such as --columns time={k + 1}:ms"
         )
-    unit = next((unit for unit, size in UNITS_OF_TIME.items() if size == scale), f"{scale:g} s")
-    return Clock(k, values[:, k] * scale, f"{columns[k]}, in {unit}", False, rate)
+    said_units = {size: unit for unit, size in reversed(UNITS_OF_TIME.items())}
+    words = f"{columns[k]}, in {said_units.get(scale, f'{scale:g} s')}"
+    if named_unit and named_unit != scale:
+        words += f" (its heading says {said_units[named_unit]})"
+    return Clock(k, values[:, k] * scale, words, False, rate)
 
 
 def _stem_and_axis(heading: str) -> tuple[str, str]:
@@ -357,6 +365,8 @@ def _stem_and_axis(heading: str) -> tuple[str, str]:
         if words and re.fullmatch(r"[wxyz0-4]|q[0-3]", words[place]):
             return " ".join(words[1:] if place == 0 else words[:-1]), words[place][-1]
     text = " ".join(words)
+    if turn := re.fullmatch(r"(.*\b)?(roll|pitch|yaw) ?(?:rate|speed)", text):
+        return (turn[1] or "") + "rate", {"roll": "x", "pitch": "y", "yaw": "z"}[turn[2]]
     joined = re.fullmatch(r"(.*[a-z])([wxyz]|(?<=q)[0-3])", text)
     return (joined[1], joined[2]) if joined else (text, "")
 
@@ -411,7 +421,7 @@ def _groups(table: Table, of_table: str) -> tuple[list[Group], list[str]]:
         having = [
             sorted(
                 (k for k, heading in enumerate(table.columns) if k not in taken
-                 and re.search(rf"\b{name}\b(?! rate)", heading.lower().replace("_", " "))),
+                 and re.search(rf"\b{name}\b(?! (?:rate|speed))", _words(heading))),
                 key=lambda k: len(table.columns[k]),
             )
             for name in names
@@ -419,9 +429,21 @@ def _groups(table: Table, of_table: str) -> tuple[list[Group], list[str]]:
         if all(having):
             add("angles", [columns[0] for columns in having])
             break
-    for k in [k for k, name in enumerate(table.columns) if "temp" in name.lower()][:1]:
-        add("temperature", [k])
-    return groups, [name for k, name in enumerate(table.columns) if k not in taken]
+    for k, name in enumerate(table.columns):
+        if re.search(r"temp(?:erat\w*)?\d*\b", _words(name)):
+            add("temperature", [k])
+            break
+    unused = [name for k, name in enumerate(table.columns) if k not in taken]
+    for stem, axes in stems.items():
+        three = sorted(set(axes) - {"w"})[:3]
+        like_angles = re.search(r"\b(?:euler|angles?|rpy|attitude|orientation)$", stem)
+        if like_angles and len(three) == 3 and taken.isdisjoint(axes.values()):
+            told = zip(("roll", "pitch", "yaw"), (axes[axis] for axis in three), strict=True)
+            said = " ".join(f"{name}={k + 1}" for name, k in told)
+            last = unused.index(table.columns[max(axes.values())])
+            unused[last] += f" (if these are angles, name them: --columns '{said}')"
+            break
+    return groups, unused
 
 
 def _chosen(groups: Sequence[Group]) -> tuple[dict[str, Group], list[str]]:

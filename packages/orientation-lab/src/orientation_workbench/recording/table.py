@@ -50,6 +50,8 @@ ELSEWHERE = {
 MISSING = {"", "nan", "null", "none", "na", "n/a", "-", "--"}
 #: The fewest rows of a table.
 FEWEST = 8
+#: The most kinds of lines in a log. If the first column has more words, they only label its rows.
+MOST_KINDS = 200
 # The largest fraction of rows that may not fit before a file is refused.
 MOST_BROKEN = 0.02
 
@@ -225,8 +227,11 @@ def _from_text(text: str, name: str) -> list[Table]:
     rows = [_split(line, delimiter) for line in lines]
     comma = delimiter != "," and sum(_is_comma(field) for row in rows[:400] for field in row) > 10
     first = Counter(row[0] for row in rows if len(row) > 3 and _number(row[0], comma) is None)
-    kinds = [kind for kind, count in first.items() if count >= FEWEST]
-    if len(kinds) > 1:
+    # A time of the day in a form that we cannot read does not name a kind of line.
+    kinds = [
+        kind for kind, count in first.items() if count >= FEWEST and not re.search(r"\d:\d", kind)
+    ]
+    if 1 < len(kinds) <= MOST_KINDS:
         return _from_log(rows, kinds, name, comma)
     return [_table(rows, name, comma)]
 
@@ -251,7 +256,9 @@ def _number(field: str, comma: bool = False) -> float | None:
         pass
     if field.lower() in MISSING:
         return float("nan")
-    # A date, which may have the day first and points, with a time, or a time alone.
+    # A date, which may have the day first and points, with a time, or a time alone. The hour may
+    # have one digit.
+    field = re.sub(r"(?<!\d)(\d:)", r"0\1", field)
     day = re.sub(r"^(\d\d)\.(\d\d)\.(\d{4})", r"\3-\2-\1", field).replace("/", "-")
     for text in (day, f"2000-01-01T{field}"):
         with suppress(ValueError):
@@ -381,11 +388,14 @@ def _from_log(
     """Make a table of each kind of line that begins with its name, as in drones and phones."""
     # In ArduPilot, a line FMT has type, length, name, formats, and the names of the columns. In
     # Android, the names of the columns are in a comment.
-    heads = {row[3]: row[5:] for row in rows if row[0] == "FMT" and len(row) > 5}
+    heads = {row[3]: row[5:] for row in rows if len(row) > 5 and row[0] == "FMT"}
     heads |= {row[0].lstrip("# "): row[1:] for row in rows if row and row[0].startswith("#")}
     tables = []
+    lines_of: dict[str, list[tuple[int, list[str]]]] = {}
+    for number, row in enumerate(rows, 1):
+        lines_of.setdefault(row[0] if row else "", []).append((number, row[1:]))
     for kind in kinds:
-        lines = [(number, row[1:]) for number, row in enumerate(rows, 1) if row and row[0] == kind]
+        lines = lines_of[kind]
         columns = heads.get(kind)
         # Of several instruments of a kind, which column I distinguishes, only the first counts.
         if columns and "I" in columns:
