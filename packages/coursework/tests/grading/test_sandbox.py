@@ -494,7 +494,7 @@ def test_what_a_busy_machine_withholds_is_charged_to_nobody(monkeypatch, ticks, 
 @pytest.mark.long
 def test_an_answer_that_gets_next_to_nothing_of_a_processor_is_not_lost():
     limits = Limits(
-        cell_seconds=30, cell_wall_seconds=1.5, grace_seconds=0.5, notebook_wall_seconds=60
+        cell_seconds=30, cell_wall_seconds=1.5, grace_seconds=0.5, notebook_wall_seconds=600
     )
     begun = "import time\nbegun = time.process_time()"
     source = "while time.process_time() - begun < 0.1:\n    pass\ncheck('q', 1)"
