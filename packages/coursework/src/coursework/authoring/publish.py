@@ -96,13 +96,11 @@ def publish(course: Course, site: str | Path) -> Path:
 
 def parts_of(course: Course, folder: str | Path) -> Parts:
     """Return the parts from which the pages of a course are built."""
-    own = re.sub(r"[^a-z0-9]+", "_", course.title.lower()).strip("_") + "_questions"
-    plugin = "" if course.package else own
-    wheels = (
-        own_wheels(course, folder)
-        if course.package
-        else [wheel("coursework-checks", folder), questions_wheel(course, plugin, folder)]
-    )
+    if course.package:
+        wheels, plugin = own_wheels(course, folder), ""
+    else:
+        plugin = re.sub(r"[^a-z0-9]+", "_", course.title.lower()).strip("_") + "_questions"
+        wheels = [wheel("coursework-checks", folder), questions_wheel(course, plugin, folder)]
     return {
         "format": FORMAT,
         "title": course.title,

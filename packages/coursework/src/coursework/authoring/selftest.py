@@ -170,14 +170,10 @@ def try_question(question: AuthoredQuestion, against_sealed: bool = True) -> Fin
 def _try_text(question: AuthoredQuestion) -> Finding:
     """Test a question that a person marks: blanks are no answer, and every text waits."""
     outcomes = [_judge(question, answer).outcome for answer in (..., "", question.answer)]
-    faults = [
-        *(
-            []
-            if outcomes == ["not attempted", "not attempted", "undecided"]
-            else [f"Its answers get {outcomes}."]
-        ),
-        *([] if question.rubric else ["Graders need a `rubric`: say what to look for."]),
-    ]
+    right = outcomes == ["not attempted", "not attempted", "undecided"]
+    faults = [] if right else [f"Its answers get {outcomes}."]
+    if not question.rubric:
+        faults.append("Graders need a `rubric`: say what to look for.")
     return Finding(question.name, question.public.kind, [], [], [], None, question.worth, faults)
 
 

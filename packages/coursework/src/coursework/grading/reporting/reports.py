@@ -213,25 +213,25 @@ def _write_if_new(path: Path, content: str) -> None:
 def grades(records: Iterable[Record], names: Sequence[str], term: Term) -> Iterator[str]:
     """Return all marks as lines of CSV, one for each student and assignment."""
     header = ["student", "assignment", "points", "worth", "undecided", "late", *names]
+    now = datetime.datetime.now(datetime.UTC)
     return lines(
         [*header, *(f"{name}: outcome" for name in names)],
-        (_grades_of(record, names, term) for record in records),
+        (_grades_of(record, names, term, now) for record in records),
     )
 
 
-def _grades_of(record: Record, names: Sequence[str], term: Term) -> list[object]:
+def _grades_of(
+    record: Record, names: Sequence[str], term: Term, now: datetime.datetime
+) -> list[object]:
     marks = [record.marks.get(name) for name in names]
+    result = result_of(record.student, record.assignment, record, term, {}, now)
     return [
         record.student,
         record.assignment,
         record.points,
         record.worth,
         record.undecided,
-        "late"
-        if result_of(
-            record.student, record.assignment, record, term, {}, datetime.datetime.now(datetime.UTC)
-        ).late
-        else "",
+        "late" if result.late else "",
         *(mark.points if mark else "" for mark in marks),
         *(mark.outcome if mark else "" for mark in marks),
     ]
