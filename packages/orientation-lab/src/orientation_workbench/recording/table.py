@@ -254,8 +254,8 @@ def _number(field: str, comma: bool = False) -> float | None:
         return float(field.replace(",", ".") if comma else field)
     except ValueError:
         pass
-    if field.lower() in MISSING:
-        return float("nan")
+    if ":" not in field:
+        return float("nan") if field.lower() in MISSING else None
     # A date, which may have the day first and points, with a time, or a time alone. The hour may
     # have one digit.
     field = re.sub(r"(?<!\d)(\d:)", r"0\1", field)
