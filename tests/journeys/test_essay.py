@@ -7,7 +7,7 @@ ESSAY = "rotations.html"
 STOPS = """() => [...document.querySelectorAll('[data-stop]')]
   .map((stop) => [stop.closest('section').id, stop.dataset.stop])"""
 LINKED = ["your-turn", "two-motors"]
-SIZES = [(1300, 900), (740, 360), (380, 760)]
+SIZES = [(1300, 900), (1024, 700), (740, 360), (380, 760)]
 ZOOMED = (320, 200)  # a window of 1280 by 800 at 400 %
 # Whether the place is visible: within the window, and not covered.
 SEEN = """(box) => {
