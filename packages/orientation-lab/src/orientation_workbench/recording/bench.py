@@ -148,7 +148,7 @@ class _Bench:
     def _missing(self, kind: str) -> None:
         advice = f"If the file has one, name its columns: --columns {kind}=2-4."
         article = "an" if kind == "accelerometer" else "a"
-        self.say(kind, UNKNOWN, f"no heading names {article} {kind}", {}, advice)
+        self.say(kind, UNKNOWN, f"no usable column has the name of {article} {kind}", {}, advice)
 
     # --- what is in it --------------------------------------------------------------------------
 
@@ -165,7 +165,8 @@ class _Bench:
                 UNKNOWN,
                 f"{self.content.clock}: the rate is not known",
                 {},
-                "Give the rate, such as --rate 100.",
+                "Give the rate, such as --rate 100, or the column of the times, such as --columns "
+                "time=1.",
             )
         steps = np.diff(time)
         step = float(np.median(steps))
