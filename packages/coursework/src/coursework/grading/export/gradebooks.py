@@ -103,7 +103,10 @@ class Marks:
                 self.records.append(record)
         if not self.records:
             named = f" of {assignment!r}" if assignment else ""
-            raise CannotExport(f"There are no marks{named} in {store.folder}.")
+            raise CannotExport(
+                f"There are no marks{named} in {store.folder}"
+                + (f" as of {as_of:%Y-%m-%d %H:%M}." if as_of else ".")
+            )
         # A student who was renamed has a record that was set aside.
         aside = store.folder / "put-aside"
         if lost := [
