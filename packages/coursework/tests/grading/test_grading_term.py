@@ -186,7 +186,7 @@ def test_what_is_dropped_is_best_for_the_student(rules):
     "before, after, says",
     [
         ("time-zone", "timezone", "unknown key 'timezone'"),
-        ("Europe/Amsterdam", "Europe/Nowhere", "no time zone 'Europe/Nowhere'"),
+        ("Europe/Amsterdam", "Europe/Nowhere", "line 3: there is no time zone 'Europe/Nowhere'"),
         ("grace-minutes = 15", "grace = 15", "unknown key 'grace' in late"),
         ("a-day = 0.1", "a-day = 10", "late.a-day must be a number from 0 to 1, not 10"),
         ("due = 2026-10-05T23:59:00", "due = 2026-10-05", "a date with a time.*2026-10-05"),

@@ -177,25 +177,25 @@ def test_a_column_is_filled_with_one_assignment(tmp_path):
     assert "correct column = 'hw 2' in the assignment's table" in said
 
 
-def test_a_mark_changed_by_hand_in_moodle_stays(tmp_path):
-    """Every assignment's worksheet calls its column Grade."""
+def test_each_worksheet_of_moodle_is_of_one_assignment(tmp_path):
+    """It numbers the participants anew, calls its column Grade, and may hold a mark by hand."""
     course = Course(tmp_path, hw1={"sum": (5, 4)}, hw2={"load": (7, 4)})
-    course.hands_in("ada", "hw1", sum=6)
-    course.hands_in("ada", "hw2")
-    course.grade()
-    row = {
-        "Identifier": "Participant 1",
-        "Full name": "Ada",
-        "ID number": "ada",
-        "Grade": "",
-        "Maximum Grade": "4.00",
-        "Grade can be changed": "Yes",
-    }
-    book = course.write_table("hw1.csv", [row])
-    course.export(book, "--assignment", "hw1")
-    book = course.write_table("hw2.csv", [{**row, "Grade": "0"}])
-    said = course.export(book, "--assignment", "hw2")
-    assert "ada: 0, and graded 4" in said and ",0," in book.read_text()
+    for name, first, there, after in (("hw1", 17, "", ["0", "0"]), ("hw2", 40, "0", ["0", "4"])):
+        rows = [
+            {"Identifier": f"Participant {first}", "Full name": "Ada Lee", "Grade": there},
+            {"Identifier": f"Participant {first + 1}", "Full name": "Ben Moe", "Grade": ""},
+        ]
+        more = {"Maximum Grade": "4.00", "Grade can be changed": "Yes"}
+        book = course.write_table(f"{name}.csv", [row | more for row in rows])
+        if name == "hw1":
+            course.run("term", "new", "marks", "--solutions", "solutions", "--roster", book)
+        for number, row in enumerate(rows, first):
+            folder = f"{name}/{row['Full name']}_{number}_assignsubmission_file_"
+            course.hands_in(folder, name, sum=6)
+        course.run("grade", f"handed-in/{name}", "--out", "marks", "--solutions", "solutions")
+        said = course.export(book, "--assignment", name)
+        assert list(course.column(book, "Grade").values()) == after, said
+    assert "Ada Lee: 0, and graded 4" in said
 
 
 def test_a_cell_that_is_added_leaves_a_decision_where_it_is(course):

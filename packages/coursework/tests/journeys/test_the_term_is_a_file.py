@@ -82,7 +82,6 @@ def test_from_a_new_file_to_filled_columns(tmp_path):
     collected(course, "ada", "hw1", "2025-10-01 09:00:00")
     collected(course, "ada", "hw2", load=6)
     course.grade()
-    book = course.canvas_book("HW 1 (11)", "HW 2 (12)")
     rows = [{"Student": "", "ID": 1, "SIS User ID": "", "SIS Login ID": one, "Section": "x",
              "HW 1 (11)": "", "HW 2 (12)": ""} for one in ("ada", "ben")]  # fmt: skip
     book = course.write_table("book.csv", rows)
@@ -113,13 +112,6 @@ def test_what_is_misspelt_is_refused_with_its_line(course, more, said):
     write_term(course, more)
     assert re.search(said, course.grade(fails=True))
     assert not (course.marks / "grades.csv").exists()
-
-
-def test_a_time_zone_that_there_is_not_is_refused(course):
-    write_term(course, text=TERM.replace("Europe/Paris", "Europe/Pariss"))
-    assert "line 2: there is no time zone 'Europe/Pariss'" in course.run(
-        "term", "marks", fails=True
-    )
 
 
 def test_blank_copies_count_less_than_finished_work(course):

@@ -684,8 +684,8 @@ def _keys_of_line(book: Gradebook, system: System, line: int) -> set[tuple[str, 
 def _keys_of_student(system: System, student: str, identity: Identity) -> Iterator[tuple[str, str]]:
     called = identity.called
     if system.number and system.name.lower() in called:
+        # In Moodle, the roster may have come from another assignment, which has other numbers.
         yield "id", called[system.name.lower()]
-        return
     for own in identity.own or ():
         yield "own", own.lower()
     if "email" in called:

@@ -171,12 +171,8 @@ class Roster:
                     f"Several students in the roster match: {', '.join(sorted(found))}. If they "
                     "work together, list them under [groups] in term.toml."
                 )
-            if kind in self.kinds and kind in (
-                "canvas",
-                "canvas anonymous",
-                "moodle",
-                "gradescope",
-            ):
+            # Moodle's number is no such ID: it numbers the participants of each assignment anew.
+            if kind in self.kinds and kind in ("canvas", "canvas anonymous", "gradescope"):
                 surest = kind
             if kind == "github" and kind not in self.kinds:
                 return None, (
