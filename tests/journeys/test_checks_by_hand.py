@@ -69,10 +69,18 @@ def test_a_cell_that_failed_says_nothing_of_other_answers(kernel):
     assert "stopped before its end" in kernel(CHECK)
 
 
-def test_a_check_of_a_name_that_was_never_set_says_which_cell_to_run(kernel):
-    assert "No cell that you have run sets `boom_C_N`." in kernel(
-        CHECK.replace("B_C_N", "boom_C_N")
-    )
+@pytest.mark.parametrize(
+    ("written", "advice"),
+    [
+        (CHECK.replace("B_C_N", "boom_C_N"), "No cell that you have run sets `boom_C_N`."),
+        ("from sympy import *\nB_C_N = rot_axis2(-beta)", "run `from sympy import *`?"),
+        ("import numpy\nB_C_N = numpy.cos(beta)", "For symbols, use those of SymPy"),
+        ("import math\nB_C_N = math.cos(beta)", "For symbols, use those of SymPy"),
+    ],
+)
+def test_an_error_that_names_no_remedy_is_followed_by_one(kernel, written, advice):
+    assert advice in kernel(written)
+    kernel("beta = sm.Symbol('beta')")
 
 
 @pytest.mark.parametrize(

@@ -159,10 +159,9 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
     }
     files |= {path.name: path.read_bytes() for path in course.exercises.glob("*.ipynb")}
     if not course.package:
-        files |= {f"sealed/{path.name}": path.read_bytes() for path in course.sealed.glob("*.json")}
         files |= {
-            f"sealed/variants/{path.name}": path.read_bytes()
-            for path in (course.sealed / "variants").glob("*.json")
+            f"sealed/{path.relative_to(course.sealed).as_posix()}": path.read_bytes()
+            for path in course.sealed.rglob("*.json")
         }
     files[MANIFEST] = manifest(files).encode()
     write_zip(target, {f"exercises/{name}": content for name, content in files.items()})

@@ -26,6 +26,19 @@ CHANGED = (
     "The cell that set `{0}` no longer sets it, so `{0}` still has an earlier value. We checked "
     "nothing. Set `{0}` in that cell, run it, and then run this check again."
 )
+# What to add to errors of SymPy, NumPy and `math` whose words name neither the slip nor its remedy,
+# by a pattern of these words.
+ADVICE = {
+    r"could_extract_minus_sign|FunctionClass": (
+        "Has a cell run `from sympy import *`? It replaces the symbols `beta`, `gamma` and `zeta` "
+        "by functions of SymPy. Remove that line, run the cell that creates the symbols, and then "
+        "run this cell again.\n"
+    ),
+    r"Cannot convert expression to float|ufunc does not support .* type (?!Function)": (
+        "Functions of `math` and NumPy take numbers only. For symbols, use those of SymPy, such as "
+        "`sm.cos`.\n"
+    ),
+}
 # The message about each name whose value is an earlier one, and the cell that last set each name.
 _outdated: dict[str, str] = {}
 _setters: dict[str, str] = {}
@@ -61,6 +74,7 @@ def ends(result: object) -> None:
     if not getattr(result, "success", True):
         _outdated.update(dict.fromkeys(names_set_by(_running[0]), STOPPED))
         error = getattr(sys, "last_value", None)
+        print(*(text for words, text in ADVICE.items() if re.search(words, str(error))), end="")
         checked = re.search(r"\bcheck\(.*", _running[0], re.DOTALL)
         if type(error) is NameError and checked and error.name in re.findall(r"\w+", checked[0]):
             print(
@@ -71,15 +85,14 @@ def ends(result: object) -> None:
 
 def outdated() -> list[str]:
     """Return what there is to say of names in the running cell whose value is an earlier one."""
-    names = sorted(_outdated.keys() & set(re.findall(r"\w+", _running[0])))
-    return [_outdated[name].format(name) for name in names]
+    names = _outdated.keys() & set(re.findall(r"\w+", _running[0]))
+    return [_outdated[name].format(name) for name in sorted(names)]
 
 
 def watch() -> None:
     """Follow the cells of the kernel in which this runs, if there is one."""
     # Without a kernel there may be no IPython, or only a replacement.
     get_shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)
-    shell = get_shell()
-    if events := getattr(shell, "events", None):
+    if events := getattr(get_shell(), "events", None):
         events.register("pre_run_cell", begins)
         events.register("post_run_cell", ends)
