@@ -367,7 +367,7 @@ def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_pat
         assert served.decide(cluster.id, body).status == 409  # Ann saw the earlier value.
         assert (
             served.decide(cluster.id, form(form="worths", line=says, points=9, step="-")).status
-            == 400
+            == 409
         )
         assert (
             served.decide(

@@ -208,17 +208,18 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
         ]
         assert (
             served.decide(
-                cluster.id, "credit=0.5&comment=Half+of+it.&rubric=Copied%3F&why=appeal"
+                cluster.id, "credit=&given=0%2C5&comment=Half+of+it.&rubric=Copied%3F&why=appeal"
             ).status
             == 303
         )
         place = [one.student for one in cluster.members].index("copies")
         assert served.decide(cluster.id, f"credit=1&only={place}").status == 303
         for body, status in (
-            ("credit=9", 400),
-            ("credit=-1", 400),
-            ("credit=x", 400),
-            ("credit=nan", 400),
+            ("credit=9", 409),
+            ("credit=-1", 409),
+            ("credit=x", 409),
+            ("credit=&given=nan", 409),
+            ("credit=&given=", 409),
             ("", 400),
             ("credit=1&only=9", 400),
         ):

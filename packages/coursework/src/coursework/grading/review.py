@@ -539,8 +539,12 @@ class _Answer(_Page):
 
     def decide(self, cluster: Cluster, comment: str, why: str) -> bool:
         """Enter or take back a decision on a cluster or one answer; return whether to stay."""
-        graded, who, said = self.graded, self.settings["grader"], self.get_argument("credit")
-        worth, only = cluster.mark.worth, self.get_argument("only", "")
+        graded, who, worth = self.graded, self.settings["grader"], cluster.mark.worth
+        # The button beside the field for other points has no value of its own.
+        only, said = (
+            self.get_argument("only", ""),
+            self.get_argument("credit") or self.get_argument("given"),
+        )
         seen = dict(
             zip(range(len(cluster.members)), self.get_argument("seen", "").split(), strict=False)
         )
@@ -639,12 +643,12 @@ class _Answer(_Page):
     def points_said(self, said: str, worth: float, least: float | None = None) -> float:
         try:
             points = float(said.replace(",", "."))
+            # A line of a rubric may deduct points.
+            if not (-worth if least is None else least) <= points <= worth:
+                raise ValueError
+            return points
         except ValueError:
-            raise web.HTTPError(400, "no number") from None
-        # A line of a rubric may deduct points.
-        if not (-worth if least is None else least) <= points <= worth:
-            raise web.HTTPError(400, "no such credit")
-        return points
+            raise Collision(f"{said!r} is not a number of points up to {number(worth)}.") from None
 
     def worth_in_force(self, cluster: Cluster, line: str) -> str:
         found = self.graded.standing.worths.get((cluster.question, line))
@@ -680,7 +684,7 @@ def _history(
 
 
 #: The fields of the page that a person types into.
-TYPED = ("comment", "why", "words", "new", "new_points", "of")
+TYPED = ("comment", "why", "words", "new", "new_points", "of", "given")
 #: Stands on the page in place of a decision that does not exist.
 NONE = "-"
 
