@@ -1,6 +1,5 @@
 """A check judges the present content of the notebook, in a kernel."""
 
-import shutil
 from contextlib import suppress
 
 import nbformat
@@ -18,11 +17,8 @@ CHECK = "check('simple-orientations/boom', B_C_N)"
 @pytest.fixture(scope="module")
 def kernel(tmp_path_factory):
     folder = tmp_path_factory.mktemp("exercises")
-    name = "simple-orientations.ipynb"
-    shutil.copy(REPOSITORY / "exercises" / name, folder)
-    client = NotebookClient(
-        nbformat.read(folder / name, 4), resources={"metadata": {"path": str(folder)}}
-    )
+    notebook = nbformat.read(REPOSITORY / "exercises" / "simple-orientations.ipynb", 4)
+    client = NotebookClient(notebook, resources={"metadata": {"path": str(folder)}})
     with client.setup_kernel():
 
         def run(code):
@@ -103,9 +99,33 @@ def test_a_reply_shows_the_answer_as_it_was_read(kernel, answer, shown):
     assert shown in kernel(f"check('simple-orientations/boom', {answer})")
 
 
+DIRECTIONS = """psi, slope = sm.symbols('psi, {}')
+line = sm.Matrix([sm.cos(slope)*sm.cos(psi), sm.cos(slope)*sm.sin(psi), {}sm.sin(slope)])
+level = sm.Matrix([0, 0, 1]).cross(line).normalized()
+third = {}
+check('{}', {})"""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("gamma", "-", "level.cross(line)", "reference-frames/climb", "third"),
+        (
+            *("theta", "", "line.cross(level)", "direction-cosine-matrices/east-north-up"),
+            "[level, third, line]",
+        ),
+    ],
+)
+def test_a_direction_may_be_a_cross_product_divided_by_its_length(kernel, words):
+    """Its formula then contains a root, which is right where the text of the question holds."""
+    assert "Correct" in kernel(DIRECTIONS.format(*words))
+
+
 def test_an_orientation_is_shown_as_a_triad(kernel):
-    kernel("matrix = sm.Matrix([[0, 1, 0], [0, 0, 1], [1, 0, 0]])")
-    reply = kernel("check('simple-orientations/crank', matrix)")
+    reply = kernel(
+        "matrix = sm.Matrix([[0, 1, 0], [0, 0, 1], [1, 0, 0]])\n"
+        "check('simple-orientations/crank', matrix)"
+    )
     # Its x axis lies along the y axis of N: to the right.
     assert 'aria-label="The triad of A, as we read your answer, drawn in the triad of N."' in reply
     assert "We read: [[0, 1, 0], [0, 0, 1], [1, 0, 0]]" in kernel(
