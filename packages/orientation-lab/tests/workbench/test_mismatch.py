@@ -251,6 +251,15 @@ SPELLED = {
     ),
     "MATLAB's console": "R =\n\n    {}    {}    {}\n    {}    {}    {}\n"
     "    {}    {}    {}\n".format(*entries()),
+    "MATLAB's pages": "R(:,:,1) =\n\n    {}    {}    {}\n    {}    {}    {}\n"
+    "    {}    {}    {}\n".format(*entries()),
+    "KUKA": "{{X 512.3, Y -80.1, Z 300.0, A {:.6f}, B {:.6f}, C {:.6f}}}".format(
+        *np.degrees(body_fixed_from_dcm(DCM, "zyx"))
+    ),
+    "Fanuc": "X = 512.3 mm, Y = -80.1 mm, Z = 300.0 mm,\n"
+    "W = {2:.6f} deg, P = {1:.6f} deg, R = {0:.6f} deg".format(
+        *np.degrees(body_fixed_from_dcm(DCM, "zyx"))
+    ),
     "MATLAB's live script": "R = 3\u00d73\n    {}    {}    {}\n    {}    {}    {}\n"
     "    {}    {}    {}".format(*entries()),
     "Julia": "3\u00d73 SMatrix{{Float64}} with indices SOneTo(3)\u00d7SOneTo(3):\n {} {} {}\n"
@@ -487,6 +496,7 @@ def test_every_fault_leads_to_a_section_and_to_a_checked_question():
 
 BAD = {
     "13 numbers": (" ".join(map(str, range(13))), "13 numbers"),
+    "positions and angles": ("300 2 3 0.1 0.2 0.3\n4 5 6 0.1 0.2 0.3", "leave out positions"),
     "no number": ("nan 0 0 1", "'nan'"),
     "something to be worked out": ("0 0 pi/2", "'pi'"),
     "a fraction": ("1/2 1/2 1/2 1/2", "'1/2'"),

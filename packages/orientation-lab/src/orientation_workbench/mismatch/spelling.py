@@ -101,6 +101,19 @@ SPELLING = {
         ),
         # A frame of transforms.json has a number called rotation before its matrix.
         (rf'"rotation"\s*:\s*{NUMBER}\s*,(?=\s*")', " "),
+        # The poses of KUKA's and Fanuc's robots: a position in millimetres, then three angles.
+        *(
+            (
+                r"\bX~Y~Z~{}(~){}(~){}(~)".format(*letters).replace(
+                    "~", rf"[\s=:]*{NUMBER}[\s,]*(?:(?:mm|deg)\b)?[\s,]*"
+                ),
+                angles,
+            )
+            for letters, angles in (
+                ("ABC", " yaw $1 pitch $2 roll $3 degrees "),
+                ("WPR", " roll $1 pitch $2 yaw $3 degrees "),
+            )
+        ),
         (r"(\d)d([-+]\d)", "$1e$2"),
         # The report of ROS's tf2_echo gives each orientation several times.
         (r"(in quaternion[^\[]*\[[^\]]*\])[\s\S]*?(?=at time|(?![\s\S]))", "$1\n"),
@@ -125,7 +138,8 @@ SPELLING = {
         (r"\b[xyz]\s*:\s*(?=\([^)]*,)", " "),
         # The first three numbers of an SDF pose are a position.
         (rf"(<pose[^>]*>)\s*(?:{NUMBER}\s+){{3}}(?=(?:{NUMBER}\s+){{2}}{NUMBER}\s*<)", "$1 rpy "),
-        (r"\b([a-z_]\w*)(?:\s*[\[(]\s*\d*\s*(?:,\s*\d+\s*)?[\])])+\s*(?==(?!=)|:)", "$1 "),
+        # The index before an equals sign, as in R[2] or in MATLAB's R(:,:,2).
+        (r"\b([a-z_]\w*)(?:\s*[\[(]\s*[\d:]*\s*(?:,\s*[\d:]+\s*)*[\])])+\s*(?==(?!=)|:)", "$1 "),
         (
             r"""["']?\b(?:det(?:erminant|\(\w+\))?|norm|trace|seq|secs?|nsecs?|nanosecs?|id|index|rows"""
             r"""|cols|width|height|step|fps|mesh|camera|node|time|timestamp"""

@@ -362,7 +362,11 @@ def _poses(rows, name, kind, half):
     for size in (9, 12, 16) if total > 8 else (3, 4):
         if total % size == 0 and (size > 4 or total == size):
             poses = [_nine(flat[k : k + size]) if size > 4 else flat for k in range(0, total, size)]
-            if size > 4 and total != size and not _orthogonal(np.reshape(poses, (-1, 3))):
+            if (
+                size > 4
+                and (total != size or width == 6)
+                and not _orthogonal(np.reshape(poses, (-1, 3)))
+            ):
                 continue
             return np.array(poses)
     if (
@@ -375,8 +379,8 @@ def _poses(rows, name, kind, half):
     raise ValueError(
         f"the {name} side contains {total} number{'s' * (total != 1)} in {where}: a pose takes 3 "
         "(angles, or a rotation vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) "
-        "or 16 (a matrix with a translation); next to a position, a quaternion must be four "
-        "consecutive numbers of length 1"
+        "or 16 (a matrix with a translation); leave out positions, except beside a quaternion "
+        "(four consecutive numbers of length 1)"
     )
 
 

@@ -193,7 +193,7 @@ function posesOf(rows, name, kind, half) {
   for (const size of total > 8 ? [9, 12, 16] : [3, 4]) {
     if (total % size || (size < 5 && total !== size)) continue;
     const poses = blocks(flat, size).map((row) => (size > 4 ? nineOf(row) : row));
-    if (size > 4 && total !== size && !orthogonal(blocks(poses.flat(), 3))) continue;
+    if (size > 4 && (total !== size || width === 6) && !orthogonal(blocks(poses.flat(), 3))) continue;
     return poses;
   }
   const place = total > 4 && four ? quaternionAmong([flat], half) : null;
@@ -201,7 +201,7 @@ function posesOf(rows, name, kind, half) {
   const where = rows.length === 1 ? 'one line' : `${rows.length} lines`;
   throw new Error(`the ${name} side contains ${several(total, 'number')} in ${where}: a pose takes 3 (angles, or a rotation `
     + 'vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) or 16 (a matrix with a translation); '
-    + 'next to a position, a quaternion must be four consecutive numbers of length 1');
+    + 'leave out positions, except beside a quaternion (four consecutive numbers of length 1)');
 }
 
 // The nine entries of a rotation matrix, even from one that includes a position.
