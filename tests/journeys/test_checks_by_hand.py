@@ -72,9 +72,10 @@ def test_a_cell_that_failed_says_nothing_of_other_answers(kernel):
         ("from sympy import *\nB_C_N = rot_axis2(-beta)", "run `from sympy import *`?"),
         ("import numpy\nB_C_N = numpy.cos(beta)", "For symbols, use those of SymPy"),
         ("import math\nB_C_N = math.cos(beta)", "For symbols, use those of SymPy"),
+        (f"beta = sm.pi/3\n{RIGHT}\n{CHECK}", "<code>beta</code> is no longer a symbol: a cell"),
     ],
 )
-def test_an_error_that_names_no_remedy_is_followed_by_one(kernel, written, advice):
+def test_a_slip_with_a_name_is_followed_by_its_remedy(kernel, written, advice):
     assert advice in kernel(written)
     kernel("beta = sm.Symbol('beta')")
 

@@ -9,6 +9,8 @@ would disagree.
 import re
 import sys
 
+from .points import spellings
+
 # The names that a line of code sets: what follows a keyword, or names on the left of an equals
 # sign. It is parsed as text, since a cell may have failed because it is not valid Python.
 SETS = re.compile(
@@ -87,6 +89,16 @@ def outdated() -> list[str]:
     """Return what there is to say of names in the running cell whose value is an earlier one."""
     names = _outdated.keys() & set(re.findall(r"\w+", _running[0]))
     return [_outdated[name].format(name) for name in sorted(names)]
+
+
+def overwritten(symbols: set[str]) -> list[str]:
+    """Return what there is to say of symbols whose names now have a value without any symbol."""
+    return [
+        f"`{name}` is no longer a symbol: a cell has set it to another value. Use a different name "
+        "there, and run the cell that creates the symbols again."
+        for name, value in vars(sys.modules["__main__"]).items()
+        if symbols & {name, *spellings(name)} and not getattr(value, "free_symbols", None)
+    ]
 
 
 def watch() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 
-from .cells import outdated, watch
+from .cells import outdated, overwritten, watch
 from .identity import identity
 from .kinds import number_of
 from .plain import NotPlain, Plain, by_frame, text_of, to_plain
@@ -84,6 +84,10 @@ def check(name: str, answer: object) -> Reply:
                 "Your answer is `None`. A function that returns nothing, such as `print`, gives "
                 "`None`. Set your answer to a value, and run the cells again."
             ]
+        if reply.outcome == "wrong":
+            reply.messages += overwritten(
+                sealed.question.symbols.keys() - {part for node in plain["nodes"] for part in node}
+            )
     except NotPlain as error:
         reply = Reply(name, "invalid", "unreadable", [str(error)])
     if reply.outcome == "correct" and reply.opened and reply.opened.solution:
@@ -163,8 +167,13 @@ def worked_solution(name: str, code: str) -> Reply:
             ],
         )
     entry = _note_help(name, student, "solution")
-    advice = ["Read it, close it, and write it out for yourself."]
-    reply = Reply(name, "hints", "", advice, solution_on(sealed, locker.solution))
+    reply = Reply(
+        name,
+        "hints",
+        "",
+        ["Read it, close it, and write it out for yourself."],
+        solution_on(sealed, locker.solution),
+    )
     _offer_sibling(reply, sealed.question, entry.help)
     return reply
 
@@ -293,11 +302,11 @@ def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) ->
 
 
 def _worth_another_look(record: Mapping[str, Entry]) -> list[str]:
-    today = time.time()
     reminders = [
         f"`{name}` ({number_of(days, 'day')} ago: {entry.mistake})"
         for name, entry in sorted(record.items())
-        if (days := int((today - (entry.mistake_at or today)) / DAY)) >= REVIEW_AFTER
+        if (days := int(entry.mistake_at and (time.time() - entry.mistake_at) / DAY))
+        >= REVIEW_AFTER
         and entry.mistake
     ]
     return (
@@ -345,11 +354,12 @@ def _remember(name: str, student: str, question: Question, reply: Reply) -> Entr
         answers = entry.answers
         if reply.answer not in answers and len(answers) < MOST_ANSWERS:
             answers = *answers, reply.answer
-        has_hints = reply.known is not None and reply.known.hints
-        page = reply.opened.place if has_hints and reply.opened else None
-        mistake = reply.note or "another value"
         entry = replace(
-            entry, answers=answers, page=page, mistake=mistake, mistake_at=int(time.time())
+            entry,
+            answers=answers,
+            page=reply.opened.place if reply.known and reply.known.hints and reply.opened else None,
+            mistake=reply.note or "another value",
+            mistake_at=int(time.time()),
         )
     elif reply.outcome == "correct" and entry.mistake_at < time.time() - REVIEW_AFTER * DAY:
         # The mistake was reviewed, and the answer is right.
