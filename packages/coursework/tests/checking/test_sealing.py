@@ -144,20 +144,20 @@ def test_a_picture_stands_in_the_text_and_its_words_in_plain_text():
     best = base64.b85encode(zlib.compress(json.dumps([many, ""]).encode(), 9)).decode()
     assert variants.packed(many, "") == best
     variant = Variant(
-        text="*See* {{picture}}, `{{arm}}` {{arm}} $F$ {{leg}}", shown={"arm": "2"},
+        text="*See* {{picture}}, `{{arm}}` {{arm}} $F$ {{leg}}, `m*g` * 3", shown={"arm": "2"},
         picture=variants.packed(PICTURE, 'Up & "on"'),
     )  # fmt: skip
     text = variants.text_of(variant)
     data = base64.b64encode(PICTURE.encode()).decode()
     assert text == (
         '*See* <p><img alt="Up &amp; &quot;on&quot;" width="9" '
-        f'src="data:image/svg+xml;base64,{data}"></p>, `2` 2 $F$ {{{{leg}}}}'
+        f'src="data:image/svg+xml;base64,{data}"></p>, `2` 2 $F$ {{{{leg}}}}, `m*g` * 3'
     )
     with pytest.raises(Misread, match="^A picture should be a list of two"):
         variants.text_of(Variant(picture=base64.b85encode(zlib.compress(b"[1]")).decode()))
     shown_variant = variants.Given(text, {"arm": 2, "_leg": 3})
     assert (
-        repr(shown_variant) == 'See Up & "on", 2 2 F {{leg}}'
+        repr(shown_variant) == 'See Up & "on", 2 2 F {{leg}}, m*g * 3'
         and shown_variant._repr_markdown_() == text
     )
     assert shown_variant.arm == shown_variant["arm"] == 2 and not hasattr(shown_variant, "_leg")

@@ -198,7 +198,8 @@ class Given:
         text = re.sub(
             r'<p><img alt="([^"]*)"[^>]*></p>', lambda match: html.unescape(match[1]), self._text
         )
-        return re.sub(r"[*`$]", "", text)
+        # An asterisk between spaces, or in code, is a product; the others set words in italics.
+        return re.sub(r"`([^`]*)`|\$|\*(?! )|(?<! )\*", lambda mark: mark[1] or "", text)
 
     def _repr_markdown_(self) -> str:
         return self._text
