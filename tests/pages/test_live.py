@@ -50,7 +50,8 @@ RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
   copy.querySelectorAll('.katex').forEach((formula) => (formula.removeAttribute('data-tex'), formula.removeAttribute('translate')));
   copy.querySelectorAll('.math.display').forEach((box) => box.classList.remove('notranslate'));
   // The figures of a built page share one style, and one set of outlines for their letters.
-  copy.querySelectorAll('use').forEach((use) => use.setAttribute('href',
+  // They are compared as text, since a browser fetches what stands in the href of a `use`.
+  copy.querySelectorAll('use').forEach((use) => use.replaceWith(
     document.getElementById(use.getAttribute('href').slice(1))?.getAttribute('d') ?? 'none'));
   copy.querySelectorAll('svg defs, figure style').forEach((shared) => shared.remove());
   // A script stands in the built page, and comes as a file with what Python gives.
