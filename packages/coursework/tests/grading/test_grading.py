@@ -525,18 +525,6 @@ def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypat
     assert said == {"graded": 1, "kept": 0, "refused": 0, "held": 0}
 
 
-def test_a_second_assignment_in_one_folder_can_be_judged_again(course, copied, tmp_path):
-    few = tmp_path / "few"
-    put(few, "right", handed_in("axes"), "axes.ipynb")
-    said = grade_quietly(few, copied, course / "solutions")
-    assert said["graded"] == 1
-    assert regrade(copied, solutions=course / "solutions").moves == []
-    # A renamed assignment in the term is another assignment.
-    write_term(copied, assignments={"other": ["turns"]})
-    with pytest.raises(NothingToGrade, match="no assignment 'axes'; choose from other"):
-        regrade(copied, solutions=course / "solutions")
-
-
 def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else(
     course, copied, tmp_path
 ):
@@ -1256,7 +1244,11 @@ def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
     assert "student-061" in said or "061, Student" in said
 
 
-def test_what_is_missing_is_said(course, tmp_path):
+def test_what_is_missing_is_said(course, copied, tmp_path):
+    # A renamed assignment in the term is another assignment.
+    write_term(copied, assignments={"other": ["turns"]})
+    with pytest.raises(NothingToGrade, match="no assignment 'turns'; choose from other"):
+        regrade(copied, solutions=course / "solutions")
     with pytest.raises(NothingToGrade, match="no notebook with solutions in"):
         grade(course / "submissions", tmp_path / "out", solutions=tmp_path, show=io.StringIO())
     with pytest.raises(NothingToGrade, match="no notebook with solutions named 'turn'"):

@@ -165,22 +165,28 @@ def test_what_came_in_time_counts_before_what_came_late(tmp_path):
 
 
 def test_a_group_hands_in_once(course):
+    # Marks from before there was a group stay, and are not merged when they are graded again.
+    for one, load in (("ada", 7), ("ben", 6)):
+        collected(course, one, "hw2", load=load)
+    course.grade()
     write_term(course, "[groups]", 'team = ["ada", "ben"]')
     collected(course, "team", "hw1", arm=3)
     collected(course, "cem", "hw1")
     course.grade()
     assert course.points("hw1") == {"team": 4, "cem": 8}
+    said = course.run("why", "ben", "hw2") + course.run("term", "marks")
+    assert course.points("hw2") == {"ada": 8, "ben": 0} and "ben, hw2: 0 of 8 points." in said
+    assert [row["hw2: points"] for row in course.table("course/course.csv")][:2] == ["8", "0"]
     book = book_of(course)
     course.export(book)
-    assert course.column(book, "HW 1 (11)") == {"ada": "4", "ben": "4", "cem": "8", "dan": "0"}
+    for column, points in (("HW 1 (11)", "4480"), ("HW 2 (12)", "8000")):
+        assert "".join(course.column(book, column).values()) == points
     # In the folder of one member it is also the group's; one appeal is for both.
-    (course.handed_in / "submitted" / "team").rename(course.handed_in / "submitted" / "ben")
+    (course.handed_in / "submitted/team/hw1").rename(course.handed_in / "submitted/ben/hw1")
     course.grade()
     assert course.points("hw1") == {"team": 4, "cem": 8}
-    appeal = course.write_table(
-        "appeals.csv", [{"student": "team", "question": "hw1/arm", "words": "Why?"}]
-    )
-    course.run("merge", "marks", appeal)
+    appeals = [{"student": "team", "question": "hw1/arm", "words": "Why?"}]
+    course.run("merge", "marks", course.write_table("appeals.csv", appeals))
     said = course.export(book)
     assert "  ada: hw1/arm" in said and "  ben: hw1/arm" in said
     assert "ada (in team), hw1: 4 of 8 points." in course.run("why", "ada", "hw1")
@@ -364,7 +370,6 @@ def test_nobody_else_on_the_machine_reads_marks(tmp_path):
     course.hands_in("ada", "hw1")
     course.grade()
     assert stat.S_IMODE(course.marks.stat().st_mode) == 0o700
-    made = ["gradescope", "marks", "--out", "auto.zip", "--solutions", "solutions"]
-    course.run(*made, "--assignment", "hw1")
+    course.run(*"gradescope marks --out auto.zip --solutions solutions --assignment hw1".split())
     assert stat.S_IMODE((tmp_path / "auto.zip").stat().st_mode) == 0o600
     assert json.loads((course.marks / "refused.json").read_text())

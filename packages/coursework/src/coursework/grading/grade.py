@@ -263,7 +263,7 @@ def _read_and_pair(desk: Desk, course: Course, place: Path, student: str | None)
     if student is not None and people and student not in people.people:
         raise BadRoster(f"The roster has no student {student!r}.")
     notebooks, refused = read(place, course, desk.term, student, desk.store.folder)
-    return pair(notebooks, refused, course, desk.term)
+    return pair(notebooks, refused, course, desk.term, desk.journal.standing().given)
 
 
 def _is_done(store: Store, one: Work, key: str) -> bool:

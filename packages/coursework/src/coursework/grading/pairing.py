@@ -113,9 +113,15 @@ def read(
 
 
 def pair(
-    notebooks: Iterable[Notebook], refused: Iterable[Refused], course: Course, term: Term
+    notebooks: Iterable[Notebook],
+    refused: Iterable[Refused],
+    course: Course,
+    term: Term,
+    given: Collection[tuple[str, str]] = (),
 ) -> HandedIn:
     """Sort notebooks by student, or group, and assignment, and decide which count.
+
+    If several members of a group were graded alone, as `given` says, they worked alone.
 
     If there are several notebooks for one assignment, the term's rule chooses the one that counts.
     Others count only for questions that it lacks, since an assignment may be handed in as several
@@ -133,6 +139,8 @@ def pair(
             left_alone[answered[0]] += 1
         for assignment in graded:
             group = term.group_of(notebook.student)
+            if sum((one, assignment) in given for one in term.members(group)) > 1:
+                group = notebook.student
             handed_in.setdefault((group, assignment), []).append(notebook)
     work = [
         _work_of(student, assignment, mine, course, term)

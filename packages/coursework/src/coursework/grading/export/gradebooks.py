@@ -175,8 +175,11 @@ class Marks:
         return [student for (student, _), one in self.results.items() if one.state == EXCUSED]
 
     def mark(self, student: str) -> Given:
-        """Return the student's mark for the one assignment."""
-        return self.given[self.term.group_of(student, self.assignment), self.assignment]
+        """Return the student's mark for the one assignment, perhaps from before the group."""
+        return (
+            self.given.get((self.term.group_of(student, self.assignment), self.assignment))
+            or self.given[student, self.assignment]
+        )
 
     def points(self, student: str) -> float:
         result = self.results[student, self.assignment]
@@ -187,7 +190,7 @@ class Marks:
         return [
             question
             for (whose, assignment, question), appeals in self.standing.appeals.items()
-            if whose == self.term.group_of(student, assignment)
+            if whose in (student, self.term.group_of(student, assignment))
             and assignment in self.assignments
             and any(appeal.is_open for appeal in appeals)
         ]
@@ -739,7 +742,9 @@ def write_nbgrader(path: str | Path, marks: Marks) -> str:
     """
     rows, pending = [], 0
     for (student, assignment), result in sorted(marks.results.items()):
-        given = marks.given.get((marks.term.group_of(student, assignment), assignment))
+        given = marks.given.get(
+            (marks.term.group_of(student, assignment), assignment)
+        ) or marks.given.get((student, assignment))
         if given and given.undecided:
             pending += 1
         elif given or (result.state == "missing" and result.due):

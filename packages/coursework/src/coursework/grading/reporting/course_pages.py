@@ -1,7 +1,7 @@
 """A table of all marks of a course, a page for each student, and pages on the questions."""
 
 import datetime
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ...checking.writing import answer_as_text
@@ -77,13 +77,24 @@ def write_course(store: Store, term: Term, *, now: datetime.datetime | None = No
         records = {
             name: own_record
             for name in term.assignments
-            if (own_record := store.read(term.group_of(student, name), name)) is not None
+            # A record from before there was a group stays the student's own.
+            if (
+                own_record := store.read(term.group_of(student, name), name)
+                or store.read(student, name)
+            )
         }
         results, total = results_of(student, records, term, worth, now, refused)
         for result in results:
             if result.state == DAMAGED:
                 damaged.setdefault(result.assignment, []).append(student)
-        _write_student(folder, student, records, results, total, term)
+        _write_student(
+            folder,
+            student,
+            {name: own_record.student for name, own_record in records.items()},
+            results,
+            total,
+            term,
+        )
         rows.append(_row(student, results, total))
         all_results += results
     lines += unknown_times(all_results, term)
@@ -98,10 +109,13 @@ def write_course(store: Store, term: Term, *, now: datetime.datetime | None = No
 
 
 def _misspelt(term: Term, worth: Mapping[str, float]) -> list[str]:
-    missing = [name for name in term.assignments if name not in worth]
-    others = sorted(set(worth) - set(term.assignments))
-    return [f"{name} has not been graded, so it does not count yet." for name in missing] + [
-        f"{name} was graded but is not in term.toml, so it does not count." for name in others
+    return [
+        f"{name} has not been graded, so it does not count yet."
+        for name in term.assignments
+        if name not in worth
+    ] + [
+        f"{name} was graded but is not in term.toml, so it does not count."
+        for name in sorted(set(worth) - set(term.assignments))
     ]
 
 
@@ -136,12 +150,12 @@ def _row(student: str, results: Sequence[Result], total: float | None) -> list[o
 def _write_student(
     folder: Path,
     student: str,
-    records: Iterable[str],
+    owners: Mapping[str, str],
     results: Sequence[Result],
     total: float | None,
     term: Term,
 ) -> None:
-    links = {name: f"../../{feedback_of(term.group_of(student, name), name)}" for name in records}
+    links = {name: f"../../{feedback_of(owner, name)}" for name, owner in owners.items()}
     content = page(
         "student.html",
         name=term.name,

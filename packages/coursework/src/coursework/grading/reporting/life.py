@@ -20,10 +20,11 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         The student has no mark for it.
     """
     term, journal = of_term.term_of(store.folder), Journal(store.folder)
-    whose = term.group_of(student, assignment)
+    group, all_given = term.group_of(student, assignment), journal.standing().given
+    # A mark from before there was a group stays the student's own.
+    whose = next((one for one in (group, student) if (one, assignment) in all_given), group)
     key = whose, assignment
-    record, all_given = store.read(*key), journal.standing().given
-    given = all_given.get(key)
+    record, given = store.read(*key), all_given.get(key)
     expected = term.roster and student in term.roster.people and assignment in term.assignments
     if given and record is None or not given and not expected:
         own = sorted(name for owner, name in all_given if owner == whose)
