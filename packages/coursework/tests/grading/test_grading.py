@@ -958,7 +958,7 @@ def test_a_worksheet_of_moodle_in_another_language_is_filled(marks, tmp_path, la
 
 
 def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
-    text = "Tunniste,Koko nimi,Numero,Arvosana,Paras\nOsallistuja9,A,right,,6\n"
+    text = "Tunniste,Koko nimi,Numero,Arvosana,Paras\nOsallistuja9,A,right,,6\nbroken,B,,,6\n"
     with pytest.raises(
         gradebooks.CannotExport, match=r"German, .*\[gradebook\], and below it identifier = "
     ) as found:
@@ -971,7 +971,7 @@ def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
         "grade": "Arvosana",
     }
     marks = gradebooks.Marks(marks.store, term=replace(marks.term, gradebook=names))
-    assert fill(tmp_path, marks, text)[1][1] == "Osallistuja9,A,right,6,6"
+    assert fill(tmp_path, marks, text)[1][1:] == ["Osallistuja9,A,right,6,6", "broken,B,,5,6"]
     with pytest.raises(gradebooks.CannotExport, match="no column 'Note'"):
         marks.term = replace(marks.term, gradebook={"grade": "Note"})
         fill(tmp_path, marks, text)

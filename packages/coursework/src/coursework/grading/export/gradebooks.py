@@ -326,7 +326,8 @@ SYSTEMS = (
         "Moodle",
         (("identifier",), ("grade",)),
         ("identifier",),
-        ("id number", "username", "email address"),
+        # In a university's own table, whose columns term.toml names, it is the student's ID.
+        ("id number", "username", "email address", "identifier"),
         ("full name",),
         "grade$",
     ),
