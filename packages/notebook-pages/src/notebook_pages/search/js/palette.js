@@ -4,7 +4,7 @@ import { finder } from "./find.js";
 import { pasted } from "./pasted.js";
 
 const index = self.searchIndex;
-let find = finder(index);
+let find; // built when the words have come, or for a query before that, since it takes a while on a telephone
 const fields = [];
 const root = new URL(document.documentElement.dataset.content_root || "./", location.href);
 const make = (tag, properties, ...children) => {
@@ -49,7 +49,7 @@ function attach(form) {
     const query = field.value.trim();
     const numbers = numbersFirst(query); // with numbers there is nothing to look up
     const begun = query.length < 3 && /^[\p{Script=Latin}\d\s]*$/u.test(query); // a single word so far, or nothing
-    const found = begun ? [] : numbers.length ? numbers : find(query).map(shown);
+    const found = begun ? [] : numbers.length ? numbers : (find ??= finder(index))(query).map(shown);
     list.replaceChildren(...found);
     count.textContent = begun ? "" : found.length
       ? `${found.length} ${found.length === 1 ? "place" : "places"}; Enter opens the first` : "Nothing found in this book. Try a different word. For a symbol, type its name.";
