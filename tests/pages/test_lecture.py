@@ -97,9 +97,9 @@ def test_keys_work_after_clicks_and_on_what_is_moved(opened):
     assert step(page) == 6 and slider.input_value() != value
     page.keyboard.press("PageDown")  # and a speaker's remote control continues
     assert step(page) == 7
-    page.keyboard.type("3")
-    page.keyboard.press("Enter")
-    assert step(page) == 3
+    page.keyboard.type("3\n")
+    page.keyboard.press("F5")  # the button with which a remote control starts its show
+    assert step(page) == 3 and page.evaluate("document.fullscreenElement !== null")
 
 
 def test_the_page_is_left_where_it_was(opened):

@@ -384,7 +384,7 @@
     else if (key === "t") clock.hidden = !clock.hidden;
     else if (key === "n") (notes.hidden = !notes.hidden), fit();
     else if (key === "s") openSpeaker();
-    else if (key === "f") KEYS.find(([name]) => name === "F")[2]();
+    else if (key === "f" || key === "F5") event.preventDefault(), KEYS.find(([name]) => name === "F")[2](); // F5 starts a remote control's show
     else if (key === "a") votes.get(steps[now].blocks.find((block) => votes.has(block)))?.reveal();
     if (!digit) typed = "";
   }
