@@ -41,6 +41,7 @@ def build(book):
     ("name", "text", "reason"),
     [
         ("_config.yml", None, "Run this in the folder of the book"),
+        ("_config.yml", "title: Signals\nauthor: Ana\n", "extra_extensions: [notebook_pages]"),
         ("_toc.yml", "format: jb-book\nroot: intro\nchapters: []\n", "write `root: index`"),
         ("levers.ipynb", "<<<<<<< HEAD\n{}", "levers.ipynb is not a notebook"),
     ],

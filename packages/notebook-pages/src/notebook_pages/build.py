@@ -34,6 +34,11 @@ def what_prevents_building():
             f"_toc.yml begins with `root: {root}`. Rename that page to `index`, because browsers "
             "open index.html first, and write `root: index`."
         )
+    if "notebook_pages" not in Path("_config.yml").read_text("utf8"):
+        return (
+            "_config.yml does not use notebook_pages. Set `only_build_toc_files: true`, and below "
+            "`sphinx:` set `extra_extensions: [notebook_pages]` and `recursive_update: true`."
+        )
     if not NODE_MODULES.is_dir():
         return f"{NODE_MODULES} is missing. Run `python -m notebook_pages.set_up` first."
     for notebook in filter(Path.is_file, (Path(f"{page}.ipynb") for page in pages())):

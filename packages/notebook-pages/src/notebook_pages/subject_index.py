@@ -103,10 +103,9 @@ def entry(app, page, name, main, uses, formula=None):
 
 def terms(app):
     """Return the terms of the glossary as they are written, with their anchors."""
-    domain = app.env.domains["std"]
     return {
         written: anchor
-        for (kind, written), (page, anchor) in domain.objects.items()
+        for (kind, written), (page, anchor) in app.env.domains["std"].objects.items()
         if kind == "term" and page == GLOSSARY
     }
 

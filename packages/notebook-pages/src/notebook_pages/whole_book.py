@@ -46,7 +46,7 @@ def with_offer(front, links):
     front, count = PLACE.subn(
         "<!-- whole-book -->" + (words.format("".join(links)) if links else ""), front
     )
-    if count != 1:
+    if links and count != 1:
         raise RuntimeError(
             "the front page needs one place for the whole book, `<!-- whole-book -->`; "
             f"it has {count}"

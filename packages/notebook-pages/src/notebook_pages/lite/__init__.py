@@ -62,8 +62,10 @@ PLACES = {
 
 
 def wheels_of_kernel():
-    kernel = [wheel for name in KERNEL for wheel in KERNEL_WHEELS.glob(f"{name}-*.whl")]
-    return [*sorted(FETCHED.glob("*.whl")), *kernel]
+    return [
+        *sorted(FETCHED.glob("*.whl")),
+        *(wheel for name in KERNEL for wheel in KERNEL_WHEELS.glob(f"{name}-*.whl")),
+    ]
 
 
 def wheel_of_stand_in():
@@ -162,7 +164,9 @@ def notebook_for(site, page, settings):
             f"the notebook of {page} does not contain the expected sentence on how to run it"
         )
     first.source = first.source.replace(notes[0], NOTE.format(title=settings["title"]))
-    setting = runtime.numpy_setting(settings["sphinx"]["config"]["numpy_in_the_page"])
+    setting = runtime.numpy_setting(
+        settings["sphinx"].get("config", {}).get("numpy_in_the_page", "official")
+    )
     if setting not in (False, "off"):
         announce_numpy(notebook, kinds_of_cells()[page], PLACES.get(setting, PLACES["folder"]))
     return written(notebook)
