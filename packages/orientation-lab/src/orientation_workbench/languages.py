@@ -277,8 +277,7 @@ def formula_in(
     for k, value in enumerate(values):
         lines.append((how.alone if alone else how.result).format(index=k + how.start, value=value))
     function = f"{name}_{choice}" if choice else name
-    frame = how.frame_alone if alone else how.frame
-    return frame.format(
+    return (how.frame_alone if alone else how.frame).format(
         function=function,
         arguments=", ".join(declarations),
         count=len(values),

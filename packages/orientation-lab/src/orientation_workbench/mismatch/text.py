@@ -144,8 +144,11 @@ def _rows_of_text(text, name):
         rows, half, more = labelled
         return rows, half, declared | more
     half = _half(NUMBER.findall(text))
-    groups = map(NUMBER.findall, _PATTERNS["innermost"].findall(text))
-    rows = [list(map(float, group)) for group in groups if group]
+    rows = [
+        list(map(float, numbers))
+        for group in _PATTERNS["innermost"].findall(text)
+        if (numbers := NUMBER.findall(group))
+    ]
     whole = sum(map(len, rows)) == len(NUMBER.findall(text))
     if not whole or {len(row) for row in rows} not in ({3}, {4}, {9}, {12}, {16}):
         rows = _rows_of_lines(text)
@@ -160,8 +163,9 @@ def _rows_of_text(text, name):
 
 def _unit_in(text):
     """Return the unit of angles that a text names, as a declaration."""
-    units = ("degrees", "radians")
-    return next(({"unit": unit} for unit in units if _PATTERNS[unit].search(text)), {})
+    return next(
+        ({"unit": unit} for unit in ("degrees", "radians") if _PATTERNS[unit].search(text)), {}
+    )
 
 
 def _fields(line):

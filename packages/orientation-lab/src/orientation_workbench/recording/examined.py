@@ -120,5 +120,8 @@ def as_text(examined: Examined) -> str:
 
 def as_data(examined: Examined) -> dict[str, object]:
     """Return the report as plain data in format 1, which ``--json`` prints."""
-    verdicts = [verdict._asdict() for verdict in examined.verdicts]
-    return {"format": 1, "recording": examined.name, "verdicts": verdicts}
+    return {
+        "format": 1,
+        "recording": examined.name,
+        "verdicts": [verdict._asdict() for verdict in examined.verdicts],
+    }

@@ -50,12 +50,11 @@ class Judged:
             )
         ]
         if len(self.examined.time) <= LONGEST:
-            corrected = as_csv(self.examined, self.convention)
             links.append(
                 _link(
                     "corrected.csv",
                     "text/csv",
-                    corrected,
+                    as_csv(self.examined, self.convention),
                     f"Save the corrected recording ({self.convention})",
                 )
             )

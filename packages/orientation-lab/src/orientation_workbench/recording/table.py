@@ -48,6 +48,8 @@ ELSEWHERE = {
     b"MATLAB 5.0": "a MATLAB file: convert it to CSV with writetable or writematrix",
 }
 MISSING = {"", "nan", "null", "none", "na", "n/a", "-", "--"}
+#: A label and its number, as Arduino's plotter takes them, or a number or time that begins a line.
+LABELLED = re.compile(r"(?:^|([A-Za-z_]\w*)\s*[:=]\s*)([-+.\d][^\s,;|]*)")
 #: The fewest rows of a table.
 FEWEST = 8
 #: The most kinds of lines in a log. If the first column has more words, they only label its rows.
@@ -123,6 +125,22 @@ def read_tables(source: Source, name: str | None = None) -> list[Table]:
     >>> [table] = read_tables("time,x,y\\n" + rows)
     >>> table.columns, table.values.shape
     (['time', 'x', 'y'], (9, 3))
+
+    The Arduino IDE's lines, with its time, and those of its plotter:
+
+    >>> [table] = read_tables("\\n".join(f"14:00:00.{k}00 -> {k},{k * k},{-k}" for k in range(9)))
+    >>> table.values[2].tolist()[1:]
+    [2.0, 4.0, -2.0]
+    >>> lines = [f"14:00:00.{k}00 -> ax:{k} ay:{-k} az: {k * k}.5" for k in range(9)]
+    >>> [table] = read_tables("\\n".join(lines))
+    >>> table.columns, table.values[2].tolist()[1:]
+    (['time', 'ax', 'ay', 'az'], [2.0, -2.0, 4.5])
+
+    One object of JSON to a line:
+
+    >>> [table] = read_tables("\\n".join(f'{{"t": {k}, "acc": [{k}, 2]}}' for k in range(9)))
+    >>> table.columns
+    ['t', 'acc[0]', 'acc[1]']
     """
     if isinstance(source, str) and "\n" in source:
         return _from_text(source, name or "recording")
@@ -217,14 +235,15 @@ def _from_several(files: Iterable[tuple[str, Callable[[], bytes]]], name: str) -
 def _from_text(text: str, name: str) -> list[Table]:
     if text.lstrip()[:1] in "[{":
         return _from_json(text, name)
-    lines = text.splitlines()
+    names, lines = _without_labels(text.splitlines())
     if sum(line.startswith("---") for line in lines) > 8:
         raise RecordingError(
             f"{name} contains ROS messages: save them as a table with rostopic echo -p or ros2 "
             "topic echo --csv"
         )
     delimiter = max(DELIMITERS, key=lambda one: _numbers_per_line(lines, one))
-    rows = [_split(line, delimiter) for line in lines]
+    # The Arduino IDE puts the time and an arrow before each line.
+    rows = [_split(line.replace(" -> ", delimiter or " ", 1), delimiter) for line in lines]
     comma = delimiter != "," and sum(_is_comma(field) for row in rows[:400] for field in row) > 10
     first = Counter(row[0] for row in rows if len(row) > 3 and _number(row[0], comma) is None)
     # A time of the day in a form that we cannot read does not name a kind of line.
@@ -233,7 +252,18 @@ def _from_text(text: str, name: str) -> list[Table]:
     ]
     if 1 < len(kinds) <= MOST_KINDS:
         return _from_log(rows, kinds, name, comma)
-    return [_table(rows, name, comma)]
+    return [_table(rows, name, comma, None, names)]
+
+
+def _without_labels(lines: list[str]) -> tuple[list[str], list[str]]:
+    """Return names and lines; from rows such as ``ax:0.1 ay:0.2``, take the labels as names."""
+    sample = [LABELLED.findall(line) for line in lines[len(lines) // 4 :][:200]]
+    names, count = Counter(tuple(name for name, _ in row) for row in sample).most_common(1)[0]
+    if sum(map(bool, names)) < 3 or count < 0.8 * len(sample):
+        return [], lines
+    return [name or "time" for name in names], [
+        ",".join(value for _, value in LABELLED.findall(line)) for line in lines
+    ]
 
 
 def _split(line: str, delimiter: str | None) -> list[str]:
@@ -331,11 +361,7 @@ def _table(
                 f"line {line} has {number_of(len(row), 'column')} where the others have {width}"
             )
             continue
-        found: list[float | None]
-        try:
-            found = [float(row[k]) for k in numeric]
-        except ValueError:
-            found = values(row)
+        found = values(row)
         if None in found:
             column = numeric[found.index(None)]
             broken.append(
@@ -414,7 +440,9 @@ def _from_log(
 
 def _from_json(text: str, name: str) -> list[Table]:
     try:
-        content = json.loads(text)
+        # Loggers also write one object to a line, without commas between them.
+        several = re.sub(r"\}\s*\n\s*\{", "},\n{", text)
+        content = json.loads(text if several == text else f"[{several}]")
     except json.JSONDecodeError as error:
         raise RecordingError(
             f"{name} begins like JSON but is not: line {error.lineno}, column {error.colno}: "
