@@ -65,7 +65,7 @@ DECIMALS = (
 )
 NEARLY = "This agrees with the right answer to about three digits."
 BLANK = "Put your answer in place of the `...` and run the cells again."
-STRAY = "The answer contains `y`, but this question has the symbols `x`."
+STRAY = "The answer contains `y`, but this question has the symbol `x`."
 ALL_WRONG = questions.kind_of_values(EXACT).wrong
 NUMBERS_ONLY = "The question uses `x`, but your answer contains only numbers."
 FORM = "Otherwise: " + ALL_WRONG[:1].lower() + ALL_WRONG[1:]

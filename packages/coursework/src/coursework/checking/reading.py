@@ -241,7 +241,7 @@ def _number(question: Question, result: Any, varies: bool = False) -> Number:
         name = error.args[0][:40]
         known_symbols = list(question.symbols)
         expected = (
-            f"this question has the symbols {listed(known_symbols)}"
+            f"this question has the symbol{'s' * (len(known_symbols) > 1)} {listed(known_symbols)}"
             if known_symbols
             else "this question has no symbols"
         )

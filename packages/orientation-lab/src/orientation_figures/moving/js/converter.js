@@ -184,7 +184,7 @@ export function render({ model, el }) {
     try {
       const texts = await textsIn(now);
       if (now !== chosen) return;
-      box.show(formulas.map(([name, how]) => textOf(texts, name, how)).join('\n\n'), formulas.map(([name]) => name).join('-'), now);
+      box.show(formulas.map(([name, how]) => textOf(texts, name, how)).join('\n\n'), formulas.map(([name]) => name).join('_and_'), now);
     } catch (error) { words.say(error.message); }
   }
 
