@@ -31,9 +31,10 @@ def name_cache(app, config):
 
 
 def throw_away_old_runs(paths, folder):
-    """Delete the runs of those notebooks that use changed files from the cache in ``folder``.
+    """Delete all runs from the cache in ``folder`` except those of unchanged notebooks.
 
-    Returns the paths of those notebooks.
+    The runs of a book that was moved or copied go, too, because they name their old places. Returns
+    the paths of the notebooks that use changed files.
     """
     notes = Path(folder, NOTES)
     made_with = json.loads(notes.read_text("utf8")) if notes.exists() else {}
@@ -41,7 +42,7 @@ def throw_away_old_runs(paths, folder):
     changed = {path for path, used in now.items() if made_with.get(path) != used}
     cache = get_cache(folder)
     for record in cache.list_cache_records():
-        if record.uri in changed:
+        if record.uri not in now.keys() - changed:
             cache.remove_cache(record.pk)
     notes.parent.mkdir(parents=True, exist_ok=True)
     # Write this only after deleting the runs, so that an interruption leaves no outdated run.
