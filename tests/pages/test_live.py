@@ -51,8 +51,8 @@ RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
   copy.querySelectorAll('.math.display').forEach((box) => box.classList.remove('notranslate'));
   // The figures of a built page share one style, and one set of outlines for their letters.
   // They are compared as text, since a browser fetches what stands in the href of a `use`.
-  copy.querySelectorAll('use').forEach((use) => use.replaceWith(
-    document.getElementById(use.getAttribute('href').slice(1))?.getAttribute('d') ?? 'none'));
+  copy.querySelectorAll('use').forEach((use) => use.replaceWith(`${use.getAttribute('transform')} ${
+    document.getElementById(use.getAttribute('href').slice(1))?.getAttribute('d')}`));
   copy.querySelectorAll('svg defs, figure style').forEach((shared) => shared.remove());
   // A script stands in the built page, and comes as a file with what Python gives.
   copy.querySelectorAll('script').forEach((script) => script.remove());
