@@ -364,7 +364,7 @@
     if (event.altKey || event.ctrlKey || event.metaKey || event.target.closest?.(`${TYPING}, dialog`)) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     if (!root.classList.contains("lecture")) return;
-    const remote = key === "PageDown" || key === "PageUp"; // a remote control works wherever the focus is
+    const remote = /^(PageDown|PageUp|F5)$/.test(key) && !event.shiftKey; // a remote control works wherever the focus is
     if (!remote && event.target.closest?.(MOVED) && !/^[a-z?.]$/.test(key)) return;
     if (!remote && (key === " " || key === "Enter") && !typed && event.target.closest?.("button, summary, a")) return;
     const go = { ArrowRight: 1, ArrowDown: 1, PageDown: 1, " ": 1, ArrowLeft: -1, ArrowUp: -1, PageUp: -1, Home: -steps.length, End: steps.length }[key];
@@ -384,7 +384,7 @@
     else if (key === "t") clock.hidden = !clock.hidden;
     else if (key === "n") (notes.hidden = !notes.hidden), fit();
     else if (key === "s") openSpeaker();
-    else if (key === "f" || key === "F5") event.preventDefault(), KEYS.find(([name]) => name === "F")[2](); // F5 starts a remote control's show
+    else if (key === "f" || key === "F5" && remote) event.preventDefault(), KEYS.find(([name]) => name === "F")[2](); // F5 starts a remote control's show
     else if (key === "a") votes.get(steps[now].blocks.find((block) => votes.has(block)))?.reveal();
     if (!digit) typed = "";
   }
