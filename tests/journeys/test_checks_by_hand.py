@@ -70,9 +70,9 @@ def test_a_cell_that_failed_says_nothing_of_other_answers(kernel):
     [
         (CHECK.replace("B_C_N", "boom_C_N"), "No cell that you have run sets `boom_C_N`."),
         ("from sympy import *\nB_C_N = rot_axis2(-beta)", "run `from sympy import *`?"),
-        ("import numpy\nB_C_N = numpy.cos(beta)", "For symbols, use those of SymPy"),
-        ("import math\nB_C_N = math.cos(beta)", "For symbols, use those of SymPy"),
-        (f"beta = sm.pi/3\n{RIGHT}\n{CHECK}", "<code>beta</code> is no longer a symbol: a cell"),
+        ("import numpy\nB_C_N = numpy.cos(beta)", "For an expression with symbols, use"),
+        ("import math\nB_C_N = math.cos(beta)", "For an expression with symbols, use"),
+        (f"beta = sm.pi/3\n{RIGHT}\n{CHECK}", "<code>beta</code> is not a symbol now: a cell"),
     ],
 )
 def test_a_slip_with_a_name_is_followed_by_its_remedy(kernel, written, advice):

@@ -32,13 +32,14 @@ CHANGED = (
 # by a pattern of these words.
 ADVICE = {
     r"could_extract_minus_sign|FunctionClass": (
-        "Has a cell run `from sympy import *`? It replaces the symbols `beta`, `gamma` and `zeta` "
-        "by functions of SymPy. Remove that line, run the cell that creates the symbols, and then "
-        "run this cell again.\n"
+        "A function of SymPy stands where an expression is needed: perhaps its parentheses are "
+        "missing, as in `sm.cos*2`. Or has a cell run `from sympy import *`? It replaces the "
+        "symbols `beta`, `gamma` and `zeta` by functions. Then remove that line, run the cell that "
+        "creates the symbols, and run this cell again.\n"
     ),
     r"Cannot convert expression to float|ufunc does not support .* type (?!Function)": (
-        "Functions of `math` and NumPy take numbers only. For symbols, use those of SymPy, such as "
-        "`sm.cos`.\n"
+        "Functions of `math` and NumPy take numbers only. For an expression with symbols, use "
+        "those of SymPy, such as `sm.cos`, or substitute numbers for its symbols first.\n"
     ),
 }
 # The message about each name whose value is an earlier one, and the cell that last set each name.
@@ -94,7 +95,7 @@ def outdated() -> list[str]:
 def overwritten(symbols: set[str]) -> list[str]:
     """Return what there is to say of symbols whose names now have a value without any symbol."""
     return [
-        f"`{name}` is no longer a symbol: a cell has set it to another value. Use a different name "
+        f"`{name}` is not a symbol now: a cell has set it to another value. Use a different name "
         "there, and run the cell that creates the symbols again."
         for name, value in vars(sys.modules["__main__"]).items()
         if symbols & {name, *spellings(name)} and not getattr(value, "free_symbols", None)

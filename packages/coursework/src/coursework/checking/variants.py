@@ -199,7 +199,7 @@ class Given:
             r'<p><img alt="([^"]*)"[^>]*></p>', lambda match: html.unescape(match[1]), self._text
         )
         # An asterisk between spaces, or in code, is a product; the others set words in italics.
-        return re.sub(r"`([^`]*)`|\$|\*(?! )|(?<! )\*", lambda mark: mark[1] or "", text)
+        return re.sub(r"`([^`]*)`|\$|\*(?!\s)|(?<!\s)\*", lambda mark: mark[1] or "", text)
 
     def _repr_markdown_(self) -> str:
         return self._text
