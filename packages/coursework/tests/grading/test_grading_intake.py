@@ -408,6 +408,9 @@ def test_the_roster_alone_says_whose_a_notebook_is(box, tmp_path, name, student,
     [
         ("\ufeffIdentifier;Full name;Email address\nParticipant 77;Jane Doe;jd@x.org\n",
          "Jane Doe_77_assignsubmission_file_/turns.ipynb", "jd@x.org"),
+        # Moodle numbers the participants of the next assignment anew.
+        ("Identifier,Full name\nParticipant 77,Jane Doe\n",
+         "Jane Doe_99_assignsubmission_file_/turns.ipynb", "Jane Doe"),
         ("OrgDefinedId,Username,Last Name,First Name\n#100,#jdoe,Doe,Jane\n",
          "5-6 - Jane Doe - Nov 21, 2026 801 PM/turns.ipynb", "jdoe"),
         ("id,first_name,last_name,email\njdoe,Jane,Doe,jd@x.org\n",
@@ -419,7 +422,10 @@ def test_the_roster_alone_says_whose_a_notebook_is(box, tmp_path, name, student,
 )  # fmt: skip
 def test_rosters_of_many_systems_are_read(box, tmp_path, text, name, student):
     (tmp_path / "roster.csv").write_text(text, "utf8")
-    found, _ = named(name, path=box, roster=Roster(tmp_path / "roster.csv"))
+    # Beside a number in the roster, a namesake's work with another number is nobody's.
+    found, _ = named(
+        *{name, name.replace("_77_", "_98_")}, path=box, roster=Roster(tmp_path / "roster.csv")
+    )
     assert found == ({name: student} if student else {})
 
 

@@ -133,8 +133,11 @@ def pair(
         answered = course.assignments_of(notebook)
         graded = [name for name in answered if name in course.assignments]
         if not answered:
-            why = "It contains no question of any assignment."
-            refused.append(Refused(notebook.file, notebook.student, why))
+            refused.append(
+                Refused(
+                    notebook.file, notebook.student, "It contains no question of any assignment."
+                )
+            )
         elif not graded:
             left_alone[answered[0]] += 1
         for assignment in graded:

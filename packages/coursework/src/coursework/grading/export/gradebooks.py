@@ -552,8 +552,12 @@ def _why_not(book: Gradebook, system: System, marks: Marks, line: int, student: 
         return "excused"
     if student not in marks.missing and marks.mark(student).undecided:
         return "waiting"
-    may = book.says(line, book.column("grade can be changed")).casefold()
-    return "closed" if system.name == "Moodle" and may == book.no else ""
+    return (
+        "closed"
+        if system.name == "Moodle"
+        and book.says(line, book.column("grade can be changed")).casefold() == book.no
+        else ""
+    )
 
 
 def _scaled(marks: Marks, student: str, out_of: float | None) -> float:
@@ -658,8 +662,16 @@ def _match(
         lines.setdefault(("own", own), set()).add(line)
     wanting: dict[int, list[str]] = {}
     several: list[str] = []
-    for student in dict.fromkeys((*marks.students, *marks.missing, *marks.damaged, *marks.excused)):
-        for key in _keys_of_student(system, student, marks.identity(student)):
+    everybody = {
+        student: marks.identity(student)
+        for student in (*marks.students, *marks.missing, *marks.damaged, *marks.excused)
+    }
+    # The roster may have come from another assignment, whose participants Moodle numbers otherwise.
+    anew = system.name == "Moodle" and not any(
+        ("id", one.called.get("moodle")) in lines for one in everybody.values()
+    )
+    for student, identity in everybody.items():
+        for key in _keys_of_student(system, student, identity, anew):
             candidates = lines.get(key, set())
             if len(candidates) == 1:
                 wanting.setdefault(next(iter(candidates)), []).append(student)
@@ -685,11 +697,14 @@ def _keys_of_line(book: Gradebook, system: System, line: int) -> set[tuple[str, 
     return {key for key in keys if key[1]}
 
 
-def _keys_of_student(system: System, student: str, identity: Identity) -> Iterator[tuple[str, str]]:
+def _keys_of_student(
+    system: System, student: str, identity: Identity, numbered_anew: bool
+) -> Iterator[tuple[str, str]]:
     called = identity.called
     if system.number and system.name.lower() in called:
-        # In Moodle, the roster may have come from another assignment, which has other numbers.
         yield "id", called[system.name.lower()]
+        if not numbered_anew:
+            return
     for own in identity.own or ():
         yield "own", own.lower()
     if "email" in called:

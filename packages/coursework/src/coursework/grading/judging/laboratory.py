@@ -305,9 +305,9 @@ def settle(
             laboratory.moves.append(move)
             moving[key] = old is not None and old.key != record.key
         elif before and before.points != given.points:
-            points = f"{number(before.points)} -> {number(given.points)}"
             laboratory.added.append(
-                f"{in_a_line(record.student, 60)!r}, {record.assignment}: {points}  ({given.why})"
+                f"{in_a_line(record.student, 60)!r}, {record.assignment}: "
+                f"{number(before.points)} -> {number(given.points)}  ({given.why})"
             )
         store.stage(record)
         pending[key] = None if same else given

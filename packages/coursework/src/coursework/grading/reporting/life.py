@@ -56,11 +56,19 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         student, assignment, record, term, {assignment: 0}, now, refused=senders
     )
     due = f"due {result.due:%Y-%m-%d %H:%M %Z}" if result.due else "no due date"
-    in_time = "in time" if result.handed_in else "we do not know when it was handed in"
-    late = f"late: {number(round(100 * result.penalty))} % lost" if result.late else in_time
+    late = (
+        f"late: {number(round(100 * result.penalty))} % lost"
+        if result.late
+        else "in time"
+        if result.handed_in
+        else "we do not know when it was handed in"
+    )
     if not record:
-        missing = result.due and result.state == "missing"
-        late = "it is exported as 0" if missing else "no mark is exported"
+        late = (
+            "it is exported as 0"
+            if result.due and result.state == "missing"
+            else "no mark is exported"
+        )
     lines.append(f"  {due}; {'excused' if result.state == of_term.EXCUSED else late}")
     for name, mark in record.marks.items() if record else ():
         case = cases.get(name)

@@ -276,9 +276,16 @@ def take_in(
         else:
             _take(found, others, refused, layout, name, when, read, name)
     have = {one.claim.source for one in found}
+    # Moodle numbers the participants of each assignment anew. A number that matches nobody, beside
+    # others that match, belongs to somebody who is not in the roster.
+    numbered_anew = roster is not None and not any(
+        key[0] == "moodle" and key in roster.index
+        for claim in map(layout.claim, contents)
+        for key in (claim.keys if claim else ())
+    )
     notebooks: list[Notebook] = []
     for submitted in found:
-        if one := _with_student(submitted, roster, student, refused):
+        if one := _with_student(submitted, roster, student, refused, numbered_anew):
             beside, handed_in = _beside(one, others), _when(one, others, layout)
             notebooks.append(one._replace(beside=beside, handed_in=handed_in))
     notebooks = _without_conflicts(notebooks, roster, refused)
@@ -297,17 +304,19 @@ def take_in(
                 )
                 can = " The notebook in the same folder can read it." if source in have else ""
                 refused.append(Refused(name, whose, why + can))
-    return notebooks, [_of_whom(one, layout, roster) for one in refused]
+    return notebooks, [_of_whom(one, layout, roster, numbered_anew) for one in refused]
 
 
 #: The ending that a browser adds to notebooks when it does not know their type.
 ADDED = re.compile(r"(?<=\.ipynb)\.(?:txt|json)$", re.IGNORECASE)
 
 
-def _of_whom(refused: Refused, layout: Layout, roster: Roster | None) -> Refused:
+def _of_whom(
+    refused: Refused, layout: Layout, roster: Roster | None, numbered_anew: bool
+) -> Refused:
     """Name a refused file's student by the roster, so that their work does not seem missing."""
     claim = layout.claim(refused.file)
-    known = roster.find(claim.keys, claim.place)[0] if roster and claim else None
+    known = roster.find(claim.keys, claim.place, numbered_anew)[0] if roster and claim else None
     return refused if known is None else replace(refused, student=known)
 
 
@@ -417,7 +426,11 @@ def _says(cells: Iterable[CodeCell]) -> str:
 
 
 def _with_student(
-    one: Notebook, roster: Roster | None, student: str | None, refused: list[Refused]
+    one: Notebook,
+    roster: Roster | None,
+    student: str | None,
+    refused: list[Refused],
+    numbered_anew: bool,
 ) -> Notebook | None:
     """Return the notebook with its student, or ``None`` if nobody knows whose it is."""
     known = {
@@ -437,13 +450,23 @@ def _with_student(
     if roster is None:
         identity = Identity(known if one.claim.given_by_system else {})
         return one._replace(matched="as its name or folder says", identity=identity)
-    found, how = roster.find(one.claim.keys, one.claim.place)
+    found, how = roster.find(one.claim.keys, one.claim.place, numbered_anew)
     if found is None:
         refused.append(Refused(one.file, one.claim.student, f"{how} Whose is it? {NOT_MATCHED}"))
         return None
     identity = roster.identity(found)
     return one._replace(
-        student=found, matched=how, identity=Identity({**known, **identity.called}, identity.own)
+        student=found,
+        matched=how,
+        identity=Identity(
+            {
+                **known,
+                **identity.called,
+                # The assignment's own numbers are those in its table of times.
+                **{key: known[key] for key in ("moodle",) if numbered_anew and key in known},
+            },
+            identity.own,
+        ),
     )
 
 

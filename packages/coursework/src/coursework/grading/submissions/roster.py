@@ -147,11 +147,13 @@ class Roster:
         for group in groups or ():
             self.index.setdefault(("own", _same("own", group)), set()).add(group)
 
-    def find(self, keys: Iterable[tuple[str, str]], place: str = "") -> tuple[str | None, str]:
+    def find(
+        self, keys: Iterable[tuple[str, str]], place: str = "", numbered_anew: bool = False
+    ) -> tuple[str | None, str]:
         """Return the student that a claim's keys mean and how they match, or ``None`` and why not.
 
         ``place`` is the name of the folder or file, which the roster may list under ``handed in
-        as``.
+        as``. With ``numbered_anew``, Moodle's numbers are not those in the roster.
         """
         names = dict.fromkeys((place, PurePosixPath(place).stem)) if place else ()
         keys = (*(("handed in as", name) for name in names), *keys)
@@ -171,8 +173,10 @@ class Roster:
                     f"Several students in the roster match: {', '.join(sorted(found))}. If they "
                     "work together, list them under [groups] in term.toml."
                 )
-            # Moodle's number is no such ID: it numbers the participants of each assignment anew.
-            if kind in self.kinds and kind in ("canvas", "canvas anonymous", "gradescope"):
+            if kind in self.kinds and (
+                kind in ("canvas", "canvas anonymous", "gradescope")
+                or (kind == "moodle" and not numbered_anew)
+            ):
                 surest = kind
             if kind == "github" and kind not in self.kinds:
                 return None, (
