@@ -236,14 +236,15 @@ export const AT_READER = poses([-38, 18, 0])[0];
 export const GENERIC = poses([28, 24, -22])[0];
 export const CROOKED = poses([84, 32, -58])[0];
 export const FROM = poses([-80, 60, -30])[0], TO = poses([100, 65, 40])[0];   // of stop 14
+const SWING = deg(90), TILT = deg(70), FOUR = unit([0.5, 0.35, 0.8]);   // of stop 6, and the line of stop 12
 export const SAME = poses([35, 50, 65])[0];   // the angles of stop 8
-const SECOND = (angles) => [angles[0] + PI, PI - angles[1], angles[2] + PI];
-export const TOWARDS_STAR = [deg(22), deg(36), 0];
+// At the star, and from there to the second triple of its angles, one motor after the other.
+const TOWARDS_STAR = poses([22, 36, 0], [22, 36, 0], [202, 36, 0], [202, 144, 0], [202, 144, 180]);
 export const CABLE = { wall: 2.05, start: 0.5 };
 export const axisOf = (start) => axisAngleFromDcm(frames(start).D);
 
 // The position of the eye where it differs from the usual one.
-export const EYES = { 'not-home': [8, 24], 'two-mirrors': [52, 30], 'between-poses': [64, 50] };
+export const EYES = { 'not-home': [8, 24], 'two-mirrors': [25, 35], 'between-poses': [64, 50] };
 
 // The course of the angles and the rest at a moment of a stop; start: the pose in which the stop was entered.
 export const COURSE = {
@@ -251,10 +252,9 @@ export const COURSE = {
   'two-triads': (t) => ({ angles: GENERIC, away: between(t, 0.35, 0.95) }),
   'one-motor': (t) => ({ angles: through(poses([0, 0, 0], [60, 0, 0], [120, 0, 0]), t, [0, 0.6, 1]) }),
   'nine-shadows': (t) => ({ angles: GENERIC, lit: Math.min(2, Math.floor(3 * t)) }),
-  'looking-back': (t) => ({ angles: through(poses([0, 12, 0], [55, 12, 0], [0, 12, 0], [0, 12, 0], [55, 12, 0]), t, [0, 0.3, 0.5, 0.58, 0.95]),
-    ride: t > 0.54 ? 1 : 0 }),
-  'two-motors': (t) => ({ angles: [mix(0, PI / 2, between(t, 0.08, 0.42)), mix(0, deg(70), between(t, 0.5, 0.88)), 0], swapped: true }),
-  'three-are-enough': (t) => ({ angles: t < 0.45 ? [0, 0, 0] : through([TOWARDS_STAR, TOWARDS_STAR, SECOND(TOWARDS_STAR)], t, [0.45, 0.6, 1]) }),
+  'looking-back': (t) => ({ angles: through(poses([0, 12, 0], [55, 12, 0], [0, 12, 0], [0, 12, 0], [55, 12, 0]), t, [0, 0.16, 0.28, 0.34, 0.75]), ride: t > 0.3 ? 1 : 0 }),
+  'two-motors': (t) => ({ angles: [SWING * between(t, 0.08, 0.42), TILT * between(t, 0.5, 0.88), 0] }),
+  'three-are-enough': (t) => ({ angles: t < 0.45 ? [0, 0, 0] : through(TOWARDS_STAR, t, [0.45, 0.6, 0.73, 0.86, 0.99]) }),
   'same-numbers': (t) => ({ angles: SAME.map((angle) => angle * between(t, 0.1, 0.8)) }),
   lock: (t) => ({ angles: through(poses([0, 20, 0], [0, 90, 0], [-50, 90, 50], [-50, 90, 50]), t, [0, 0.35, 0.65, 1]) }),
   'one-turn': (t, start) => ({ part: between(t, 0.15, 0.9) , start }),
@@ -347,13 +347,14 @@ const SHOWS = {
   },
   'nine-shadows'(scene, s, { D }) { shadows(scene, D[s.lit], [0, 1, 2]); },
   'two-motors'(scene, s) {
-    const [psi, theta] = s.angles, other = dcmFromBodyFixed([theta, psi, 0], 'xzy');
-    const at = add(scale(-1.34, s.right), [0, 0, 0.92]);
+    // While the text moves both, the ghost tilts when the camera swings, and swings when the camera tilts.
+    const [psi, theta] = s.free ? s.angles : [s.angles[1] * SWING / TILT, s.angles[0] * TILT / SWING];
+    const other = dcmFromBodyFixed([theta, psi, 0], 'xzy'), at = add(scale(-1.34, s.right), [0, 0, 0.92]);
     scene.camera(other, { at, size: 0.62, alpha: 0.42 });
     scene.triad('D', other, { origin: at, reach: 0.85, alpha: 0.55, thick: 0.018 });
   },
   'three-are-enough'(scene, s, { D }) {
-    starAnd(scene, STAR);
+    scene.star(scale(1.95, STAR));
     const [psi, theta] = s.angles, flat = [-Math.sin(psi), Math.cos(psi), 0];
     scene.circle(IDENTITY[0], IDENTITY[1], 1.38, 0, 2 * PI, 'muted', 0.009);
     scene.sweep([0, 0, 1], wrapped(psi), [0, 1.38, 0], 'B', { thick: 0.022 });
@@ -390,17 +391,17 @@ const SHOWS = {
     }
   },
   'one-turn'(scene, s, { D }) {
-    const [axis, angle] = axisOf(s.start);
+    // In the reader's hand the line is that of the present pose.
+    const [start, part] = s.free ? [s.angles, 0] : [s.start, s.part], [axis, angle] = axisOf(start);
     if (angle < 0.05) return;
     scene.dashes(scale(-2.0, axis), scale(2.0, axis), 0.022, 'accent', 13);
     scene.label(scale(2.0, axis), '\\hat{e}', 'accent');
-    const home = frames(s.start).D;
-    for (const row of home) {   // the circle of each arrow's tip, and the completed part
+    for (const row of frames(start).D) {   // the circle of each arrow's tip, and the completed part
       const foot = scale(dot(row, axis) * 1.3, axis), arm = subtract(scale(1.3, row), foot);
       if (length(arm) < 0.08) continue;
       const u = unit(arm);
       scene.circle(u, cross(axis, u), length(arm), 0, 2 * PI, 'muted', 0.008, foot, 0.8);
-      scene.sweep(axis, -angle * s.part, arm, 'accent', { origin: foot, thick: 0.02 });
+      scene.sweep(axis, -angle * part, arm, 'accent', { origin: foot, thick: 0.02 });
     }
     scene.triad('D', D, { reach: 1.3 });
   },
@@ -434,16 +435,17 @@ const SHOWS = {
     scene.sweep(axis, 2 * gap, scale(0.95, way(deg(-32))), 'accent', { thick: 0.022 });
   },
   'four-numbers'(scene, s, { D }) {
-    const { axis } = FOUR, half = s.whole / 2;
+    const [axis, angle] = turnOf(s), half = angle / 2, aside = Math.abs(axis[2]) > 0.99 ? [1, 0, 0] : [0, 0, 1];
     scene.dashes(scale(-1.9, axis), scale(1.9, axis), 0.02, 'accent', 13);
-    const arm = scale(1.3, unit(cross(axis, [0, 0, 1])));
-    scene.sweep(axis, s.whole % (2 * PI), arm, 'D', { thick: 0.024 });
+    scene.label(scale(1.9, axis), '\\hat{e}', 'accent');
+    const arm = scale(1.3, unit(cross(axis, aside)));
+    scene.sweep(axis, angle % (2 * PI), arm, 'D', { thick: 0.024 });
     scene.circle(unit(arm), cross(axis, unit(arm)), 1.3, 0, 2 * PI, 'muted', 0.008);
     // Along the axis is the vector part, as long as the sine of half the angle.
     if (Math.abs(Math.sin(half)) > 0.05) scene.arrow(ZERO, scale(1.5 * Math.sin(half), axis), 'accent', { thick: 0.045 });
     scene.triad('D', D, { reach: 1.15, thick: 0.022, labels: false });
     // The circle of the half angle, flat in front of the eye.
-    const [right, up] = s.view, middle = add(TARGET, scale(1.52, right), scale(1.62, up)), r = 0.64;
+    const [right, up] = s.view, middle = add(TARGET, scale(1.52, right), scale(1.62, up)), r = 0.56;
     const at = (angle, far = r) => add(middle, scale(far * Math.sin(angle), right), scale(far * Math.cos(angle), up));
     scene.circle(right, up, r, 0, 2 * PI, 'muted', 0.014, middle);
     scene.rod(at(0, -r), at(0), 0.008, 'muted');
@@ -454,7 +456,7 @@ const SHOWS = {
     scene.rod(add(middle, scale(r * c, up)), add(middle, scale(r * c, up), scale(r * d, right)), 0.028, 'accent');
     scene.ball(point, 0.075, 'accent');
     scene.ball(at(half + PI), 0.05, 'metal');
-    scene.label(at(half, r + 0.02), 'q', 'accent', middle);
+    scene.label(at(half, r + 0.06), 'q', 'accent', middle);
     scene.label(at(half + PI, r + 0.02), '-q', 'ink', middle);
   },
   'not-home'(scene, s) {
@@ -505,11 +507,8 @@ const SHOWS = {
   },
 };
 
-export const FOUR = { axis: unit([0.5, 0.35, 0.8]) };
-
-function starAnd(scene, at) {
-  scene.star(scale(1.95, at));
-}
+// The line and the angle of stop 12: those of the text, or of the pose in the reader's hand.
+export const turnOf = (s) => (s.free ? axisOf(s.angles) : [FOUR, s.whole]);
 
 // Show the components of an arrow of length 1 along the hand's arrows: its projections, which are dot products.
 function shadows(scene, row, along) {
@@ -536,7 +535,7 @@ function moved(s) {
     const [axis, angle] = axisOf(s.start);
     return turnedFrame(axis, -angle * s.part, frames(s.start).D);
   }
-  if (s.stop === 'four-numbers' && !s.free) return dcmFromAxisAngle(FOUR.axis, s.whole);
+  if (s.stop === 'four-numbers' && !s.free) return dcmFromAxisAngle(FOUR, s.whole);
   if (s.stop === 'not-home') return simpleDcm('y', s.turn);
   if (s.stop === 'between-poses' && !s.free) return ways(s.part).one;
   if (s.stop === 'it-moves' && !s.free) return motion(s.time, s.thrown).D;
