@@ -361,7 +361,7 @@ def test_the_camera_is_thrown_and_the_small_turns_add_up(open_essay):
     truth, reported = free_body(start, rate, 24), free_body(start, rate, 24, np.radians(1.5))
     assert axis_angle_from_dcm(camera(page) @ truth.T)[1] < 0.02
     off = np.degrees(axis_angle_from_dcm(reported @ truth.T)[1])
-    match = re.search(r"are (\d+) degrees off", page.locator(".look").inner_text())
+    match = re.search(r"is (\d+) degrees off", page.locator(".look").inner_text())
     assert abs(float(match[1]) - off) < 2
     # Its address opens it as it flies, and the text takes it back.
     reopened = open_essay(fragment_of("rotations", content))

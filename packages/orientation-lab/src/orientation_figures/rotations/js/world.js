@@ -6,7 +6,7 @@ import { calm, element, put, words, write } from '../../moving/js/shared.js';
 import { LABELS } from '../../moving/js/glyphs.js';
 import { Sensors } from '../../moving/js/phone.js';
 import { AT_READER, COURSE, CROOKED, EYES, FROM, LASTS, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
-  project, sceneOf, turnedAlong, turnedFrame, wholeWays, wrapped } from './scene.js';
+  project, sceneOf, turnOf, turnedAlong, turnedFrame, wholeWays, wrapped } from './scene.js';
 import { Painter } from './paint.js';
 import { STOPS } from './stops.js';
 
@@ -302,22 +302,25 @@ class World {
   // ---- words -----------------------------------------------------------------------------------------------
 
   words() {
-    const { state } = this, { D } = this.picture.frames, look = `The camera looks ${lookOf(D)}.`;
+    const { state } = this, { A, D } = this.picture.frames, look = `The camera looks ${lookOf(D)}.`;
+    const home = apart(A, D), [, turn] = turnOf(state);
     const more = {
       'one-motor': () => `First motor at ${say(state.angles[0])}: the two shadows are ${Math.cos(state.angles[0]).toFixed(2)} and ${Math.sin(state.angles[0]).toFixed(2)} long.`,
-      'nine-shadows': () => `The shadows of the arrow d ${'xyz'[state.lit]} are ${D[state.lit].map((entry) => entry.toFixed(2)).join(', ')}.`,
+      'nine-shadows': () => `The shadows of the camera's ${'xyz'[state.lit]} arrow are ${D[state.lit].map((entry) => entry.toFixed(2)).join(', ')}.`,
+      'looking-back': () => `${state.ride > 0.5 ? 'You ride with the camera' : 'You stand beside the hand'}. ${look}`,
       'three-are-enough': () => this.beside(D),
+      'same-numbers': () => look.replace('The', 'The blue'),
       lock: () => {
         const margin = Math.abs(Math.abs(wrapped(state.angles[1])) - PI / 2);
         return margin < deg(1) ? `${look} Locked: the first and the third motor turn about one line.`
           : `${look} The axes of the first and the third motor are ${say(margin < PI / 2 ? margin : PI - margin)} apart.`;
       },
-      'one-turn': () => `${look} From here, one rotation of ${say(axisOf(state.start)[1] * (1 - state.part))} leads home.`,
+      'one-turn': () => (home < deg(0.5) ? `${look} It is home.` : `${look} From here, one rotation of ${say(home)} leads home.`),
       'two-mirrors': () => `The mirrors are ${say(deg(35 + 30 * state.apart))} apart, and the arrow has turned ${say(deg(70 + 60 * state.apart))}.`,
-      'four-numbers': () => `Turned ${say(state.whole)}: the point is at ${say(state.whole / 2)}.`,
+      'four-numbers': () => `Turned ${say(turn)}: the point is at ${say(turn / 2)}.`,
       'not-home': () => this.cable(),
       'between-poses': () => this.way(D),
-      'it-moves': () => (state.free ? look : `After ${state.time.toFixed(1)} seconds the small rotations that the instrument added up are ${say(apart(D, motion(state.time, state.thrown).told))} off.`),
+      'it-moves': () => (state.free ? look : `After ${state.time.toFixed(1)} seconds the ghost is ${say(apart(D, motion(state.time, state.thrown).told))} off.`),
     }[state.stop];
     const held = this.phoneWords ?? (more ? more() : look);
     return held.replaceAll('-0.00', '0.00').replace(/-(?=\d)/g, '\u2212');
@@ -561,7 +564,7 @@ class World {
       const now = motor >= 0 && motor !== null ? wrapped(this.state.angles[motor]) : this.state[name];
       const shown = String(Number((now * factor + zero).toFixed(factor === 1 ? 1 : 0)) + 0);
       if (document.activeElement !== field || !this.set.has(name)) field.value = shown;
-      write(value, `${shown}${sign}`);
+      write(value, `${shown}${sign}`.replace('-', '\u2212'));
       put(field, 'aria-valuetext', `${title}: ${shown} ${{ '°': 'degrees', '%': 'per cent', ' s': 'seconds' }[sign]}`);
     }
   }
@@ -647,13 +650,11 @@ class World {
   // ---- the reader's own phone --------------------------------------------------------------------------------
 
   async askPhone() {
-    for (const kind of [window.DeviceOrientationEvent]) {
-      if (!kind?.requestPermission) continue;
-      if (await kind.requestPermission().catch(() => 'denied') !== 'granted') {
-        this.phoneWords = 'Access to the sensors was refused. You can still turn the gimbal with your finger.';
-        this.wake();
-        return;
-      }
+    const kind = window.DeviceOrientationEvent;
+    if (kind?.requestPermission && await kind.requestPermission().catch(() => 'denied') !== 'granted') {
+      this.phoneWords = 'Access to the sensors was refused. You can still turn the gimbal with your finger.';
+      this.wake();
+      return;
     }
     const sensors = new Sensors(), name = 'ondeviceorientationabsolute' in window ? 'deviceorientationabsolute' : 'deviceorientation';
     let first = null;
