@@ -445,7 +445,7 @@ const SHOWS = {
     if (Math.abs(Math.sin(half)) > 0.05) scene.arrow(ZERO, scale(1.5 * Math.sin(half), axis), 'accent', { thick: 0.045 });
     scene.triad('D', D, { reach: 1.15, thick: 0.022, labels: false });
     // The circle of the half angle, flat in front of the eye.
-    const [right, up] = s.view, middle = add(TARGET, scale(1.52, right), scale(1.62, up)), r = 0.56;
+    const [right, up] = s.view, middle = add(TARGET, scale(-1.6, right), scale(1.62, up)), r = 0.56;
     const at = (angle, far = r) => add(middle, scale(far * Math.sin(angle), right), scale(far * Math.cos(angle), up));
     scene.circle(right, up, r, 0, 2 * PI, 'muted', 0.014, middle);
     scene.rod(at(0, -r), at(0), 0.008, 'muted');
