@@ -256,6 +256,10 @@ SPELLED = {
     "KUKA": "{{X 512.3, Y -80.1, Z 300.0, A {:.6f}, B {:.6f}, C {:.6f}}}".format(
         *np.degrees(body_fixed_from_dcm(DCM, "zyx"))
     ),
+    "KUKA with its status": "XP1={{E6POS: X 512.3,Y -80.1,Z 300.0,A {:.6f},B {:.6f},C {:.6f},S 2,"
+    "T 35,E1 0.0}}".format(*np.degrees(body_fixed_from_dcm(DCM, "zyx"))),
+    "vectors in brackets before their names": "first ({}, {}, {}), second ({}, {}, {}), "
+    "third ({}, {}, {}): rows".format(*entries()),
     "Fanuc": "X = 512.3 mm, Y = -80.1 mm, Z = 300.0 mm,\n"
     "W = {2:.6f} deg, P = {1:.6f} deg, R = {0:.6f} deg".format(
         *np.degrees(body_fixed_from_dcm(DCM, "zyx"))
@@ -497,6 +501,8 @@ def test_every_fault_leads_to_a_section_and_to_a_checked_question():
 BAD = {
     "13 numbers": (" ".join(map(str, range(13))), "13 numbers"),
     "positions and angles": ("300 2 3 0.1 0.2 0.3\n4 5 6 0.1 0.2 0.3", "leave out positions"),
+    "two poses of a robot": ("p[0.3, 0.2, 0.5, 1, 0, 0]\np[0.3, 0.2, 0.5, 0, 1, 0]", "12 numbers"),
+    "a machine tool": ("L X+10 Y+20 Z+30 A+45 B+0 C+10", "6 numbers"),
     "no number": ("nan 0 0 1", "'nan'"),
     "something to be worked out": ("0 0 pi/2", "'pi'"),
     "a fraction": ("1/2 1/2 1/2 1/2", "'1/2'"),

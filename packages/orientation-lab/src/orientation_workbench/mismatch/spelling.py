@@ -101,18 +101,20 @@ SPELLING = {
         ),
         # A frame of transforms.json has a number called rotation before its matrix.
         (rf'"rotation"\s*:\s*{NUMBER}\s*,(?=\s*")', " "),
-        # The poses of KUKA's and Fanuc's robots: a position in millimetres, then three angles.
-        *(
-            (
-                r"\bX~Y~Z~{}(~){}(~){}(~)".format(*letters).replace(
-                    "~", rf"[\s=:]*{NUMBER}[\s,]*(?:(?:mm|deg)\b)?[\s,]*"
-                ),
-                angles,
-            )
-            for letters, angles in (
-                ("ABC", " yaw $1 pitch $2 roll $3 degrees "),
-                ("WPR", " roll $1 pitch $2 yaw $3 degrees "),
-            )
+        # The poses of KUKA's robots, in braces, and of Fanuc's, with units: a position in
+        # millimetres, then three angles. With less than that, A turns about x on machine tools, and
+        # W is the scalar part of a quaternion.
+        (
+            r"(?<=\{)\s*(?:\w+\s*:)?\s*X~,\s*Y~,\s*Z~,\s*A(~),\s*B(~),\s*C(~)(?=[,}])".replace(
+                "~", rf"\s*{NUMBER}\s*"
+            ),
+            " yaw $1 pitch $2 roll $3 degrees ",
+        ),
+        (
+            r"\bX~(?:mm)?!Y~(?:mm)?!Z~(?:mm)?!W(~)deg!P(~)deg!R(~)deg\b".replace(
+                "~", rf"[\s=:]*{NUMBER}\s*"
+            ).replace("!", r"[\s,]*"),
+            " roll $1 pitch $2 yaw $3 degrees ",
         ),
         (r"(\d)d([-+]\d)", "$1e$2"),
         # The report of ROS's tf2_echo gives each orientation several times.
@@ -138,8 +140,13 @@ SPELLING = {
         (r"\b[xyz]\s*:\s*(?=\([^)]*,)", " "),
         # The first three numbers of an SDF pose are a position.
         (rf"(<pose[^>]*>)\s*(?:{NUMBER}\s+){{3}}(?=(?:{NUMBER}\s+){{2}}{NUMBER}\s*<)", "$1 rpy "),
-        # The index before an equals sign, as in R[2] or in MATLAB's R(:,:,2).
-        (r"\b([a-z_]\w*)(?:\s*[\[(]\s*[\d:]*\s*(?:,\s*[\d:]+\s*)*[\])])+\s*(?==(?!=)|:)", "$1 "),
+        # The index before an equals sign, as in R[2] or in MATLAB's R(:,:,2). Other numbers in
+        # brackets before an equals sign or a colon are a pose.
+        (
+            r"\b([a-z_]\w*)(?:\s*[\[(]\s*(?:\d*\s*(?:,\s*\d+\s*)?|:\s*,\s*:\s*(?:,\s*\d+\s*)+)[\])])+"
+            r"\s*(?==(?!=)|:)",
+            "$1 ",
+        ),
         (
             r"""["']?\b(?:det(?:erminant|\(\w+\))?|norm|trace|seq|secs?|nsecs?|nanosecs?|id|index|rows"""
             r"""|cols|width|height|step|fps|mesh|camera|node|time|timestamp"""

@@ -374,7 +374,9 @@ def _poses(rows, name, kind, half):
                 continue
             return np.array(poses)
     if (
+        # Twelve numbers in two lines are two poses.
         total > 4
+        and total != 12
         and kind in (None, "quaternion")
         and (which := _quaternion_among([flat], half)) is not None
     ):

@@ -196,7 +196,7 @@ function posesOf(rows, name, kind, half) {
     if (size > 4 && (total !== size || width === 6) && !orthogonal(blocks(poses.flat(), 3))) continue;
     return poses;
   }
-  const place = total > 4 && four ? quaternionAmong([flat], half) : null;
+  const place = total > 4 && total !== 12 && four ? quaternionAmong([flat], half) : null;
   if (place !== null) return [flat.slice(place, place + 4)];
   const where = rows.length === 1 ? 'one line' : `${rows.length} lines`;
   throw new Error(`the ${name} side contains ${several(total, 'number')} in ${where}: a pose takes 3 (angles, or a rotation `
