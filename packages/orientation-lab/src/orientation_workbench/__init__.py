@@ -9,5 +9,9 @@ def __getattr__(name):
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     # The table of mix-ups must load without NumPy, which the search needs.
-    module = ".mismatch.explanation" if name in ("Explanation", "explain") else ".kit"
-    return getattr(import_module(module, __name__), name)
+    return getattr(
+        import_module(
+            ".mismatch.explanation" if name in ("Explanation", "explain") else ".kit", __name__
+        ),
+        name,
+    )

@@ -233,5 +233,7 @@ def formula_of(name, components, choice=None):
         for kind, entries in zip(FORMULAS[name][0].values(), components)
     ]
     chosen = [] if choice is None else [choice]
-    arguments = [*chosen, *given] if name == "simple_dcm" else [*given, *chosen]
-    return recorded(getattr(orientation, name), *arguments)
+    return recorded(
+        getattr(orientation, name),
+        *([*chosen, *given] if name == "simple_dcm" else [*given, *chosen]),
+    )

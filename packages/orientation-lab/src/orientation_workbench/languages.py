@@ -170,8 +170,10 @@ def written(language: Language, results: list, names: dict) -> tuple[list[str], 
         return text if strength >= least else f"({text})"
 
     def number(value):
-        text = language.whole.format(value) if isinstance(value, int) else repr(float(value))
-        return text, _SIGN if value < 0 else _ONE
+        return (
+            language.whole.format(value) if isinstance(value, int) else repr(float(value)),
+            _SIGN if value < 0 else _ONE,
+        )
 
     def known(value):
         if value in texts:
@@ -180,9 +182,10 @@ def written(language: Language, results: list, names: dict) -> tuple[list[str], 
         choice = value.operation == "where"
         if choice or uses[value] > 1 and value.operation not in ("variable", "and", *_COMPARISONS):
             yes, no = map(write, value.parts[1:]) if choice else ("", "")
-            line = language.chosen if choice else language.part
             lines.append(
-                line.format(part=f"part{len(lines)}", condition=text, value=text, yes=yes, no=no)
+                (language.chosen if choice else language.part).format(
+                    part=f"part{len(lines)}", condition=text, value=text, yes=yes, no=no
+                )
             )
             text, strength = f"part{len(lines) - 1}", _ONE
         texts[value] = text, strength

@@ -254,6 +254,9 @@ SAID = [
         "time, in s|",
     ),
     (lines(lambda k: f"label{k // 10}", f"which,{SIX}", 6000), "accelerometer"),
+    # An arrow stands for the Arduino IDE only if it follows the time of each row.
+    (lines(lambda k: f"{k},up -> down", f"time (ms),note,{SIX}"), "in ms||"),
+    (lines(lambda k: f"9:05:{k / 100:06.3f} -> {k}", f"time,count,{SIX}"), "time, in s|count|"),
     (
         lines(lambda k: k, f"time (ms),{SIX},motionYaw(rad),motionPitch(rad),rollDeg", columns=10),
         "'angles'",
@@ -317,6 +320,9 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
         (b"\0\1\2" * 99, "not a text file"),
         (b"Dear all,\nI am here.\nBye\n", "not a table"),
         (b"[1, 2", "line 1"),
+        (b"ax:0.1 ay:0.2 az:0.3\nmx:0 my:20 mz:30\n" * 9, "not a table"),
+        (b"ax:3,5 ay:3,25 az:3,75\n" * 9, "not a table"),
+        (b"x:1 y:2 z:3 Gyro x:4 y:5 z:6\n" * 9, "not a table"),
     ):
         with pytest.raises(RecordingError, match=words):
             read_tables(content, "file")

@@ -208,8 +208,11 @@ class _Bench:
             },
             "No filter can know what happened during a gap.",
         )
-        every = np.concatenate(list(self.raw.values()), axis=1)
-        same = float((np.diff(every, axis=0) == 0).all(axis=1).mean())
+        same = float(
+            (np.diff(np.concatenate(list(self.raw.values()), axis=1), axis=0) == 0)
+            .all(axis=1)
+            .mean()
+        )
         self.say(
             "repeated rows",
             _light(same, 0.005, 0.05),
@@ -951,8 +954,9 @@ class _Bench:
         for place, verdict in enumerate(self.verdicts):
             if verdict.about in OF_THE_FIELD and verdict.light in lights:
                 words = f"{verdict.words}, which the {cause} may have caused"
-                advice = "Examine it again once that is corrected."
-                self.verdicts[place] = Verdict(verdict.about, UNKNOWN, words, {}, advice)
+                self.verdicts[place] = Verdict(
+                    verdict.about, UNKNOWN, words, {}, "Examine it again once that is corrected."
+                )
                 self.facts.pop(verdict.about, None)
 
     # --- the orientation ------------------------------------------------------------------------
@@ -976,8 +980,13 @@ class _Bench:
             if ways := readings(self.time, self.rates, group.time, candidates):
                 self._reading(kind, group, candidates, ways)
             else:
-                words = "it rotates too little to be compared with the gyroscope"
-                self.say(kind, UNKNOWN, words, {}, "Rotate it about all its axes.")
+                self.say(
+                    kind,
+                    UNKNOWN,
+                    "it rotates too little to be compared with the gyroscope",
+                    {},
+                    "Rotate it about all its axes.",
+                )
 
     def _reading(
         self,
@@ -1063,8 +1072,9 @@ class _Bench:
         trouble = self._trouble()
         field = None if "field" in trouble else self.field
         lying = [stretch for stretch in self.still if stretch.still]
-        parts = _parts_to_judge(self.time, self.rates)
-        inputs = filter_inputs(self.time, self.rates, self.forces, field, lying, parts)
+        inputs = filter_inputs(
+            self.time, self.rates, self.forces, field, lying, _parts_to_judge(self.time, self.rates)
+        )
         for number, given in enumerate(inputs):
             shown = progress and (lambda share, done=number: progress((done + share) / len(inputs)))
             self.judgements.append(judge(given, shown))
@@ -1151,8 +1161,7 @@ def lag_of(rates: Array, vectors: Array, step: float) -> tuple[int, Array]:
         left[k] = np.sum(rest**2) - slope @ np.linalg.solve(squares + 1e-9 * np.eye(3), slope)
     best = int(left.argmin())
     # Neighbours share their noise, so the data are worth only this many independent values.
-    alone = 3 * count / (2 * half)
-    clear = left[most] > (1 + 60 / alone) * left[best]
+    clear = left[most] > (1 + 60 / (3 * count / (2 * half))) * left[best]
     clear &= left[best] < 0.6 * np.sum(slopes[inner] ** 2)
     return best - most if clear else 0, left
 
@@ -1160,10 +1169,10 @@ def lag_of(rates: Array, vectors: Array, step: float) -> tuple[int, Array]:
 def _leaps(rates: Array, vectors: Array, step: float) -> Array:
     """Mark where vectors fixed in the world change between samples as no rotation explains."""
     mean = (vectors[1:] + vectors[:-1]) / 2
-    turns = (rates[1:] + rates[:-1]) / 2
-    left = np.linalg.norm(np.diff(vectors, axis=0) + step * np.cross(turns, mean), axis=1)
-    usual = np.median(np.linalg.norm(vectors, axis=1))
-    return left > np.maximum(8 * np.median(left), 0.06 * usual)
+    left = np.linalg.norm(
+        np.diff(vectors, axis=0) + step * np.cross((rates[1:] + rates[:-1]) / 2, mean), axis=1
+    )
+    return left > np.maximum(8 * np.median(left), 0.06 * np.median(np.linalg.norm(vectors, axis=1)))
 
 
 def _by_lengths(raw: Array) -> FieldFit | None:
@@ -1202,15 +1211,23 @@ def _centre(field: Array) -> Array:
     """Return a first estimate of a magnetometer's offset, the centre of a sphere, or zero."""
     centre, radius = _sphere(field)
     spread = np.linalg.norm(field - centre, axis=1)
-    ways = np.linalg.eigvalsh(np.cov(((field - centre) / np.maximum(spread, 1e-12)[:, None]).T))
     # If the values cover only a small part of the sphere, its centre is undetermined.
-    return centre if ways[0] > 0.03 and spread.std() < 0.3 * radius else np.zeros(3)
+    return (
+        centre
+        if np.linalg.eigvalsh(np.cov(((field - centre) / np.maximum(spread, 1e-12)[:, None]).T))[0]
+        > 0.03
+        and spread.std() < 0.3 * radius
+        else np.zeros(3)
+    )
 
 
 def _sphere(points: Array) -> tuple[Array, float]:
     """Return centre and radius of the sphere nearest to some points."""
-    rows = np.concatenate([2 * points, np.ones((len(points), 1))], axis=1)
-    solution, *_ = np.linalg.lstsq(rows, (points**2).sum(axis=1), rcond=None)
+    solution, *_ = np.linalg.lstsq(
+        np.concatenate([2 * points, np.ones((len(points), 1))], axis=1),
+        (points**2).sum(axis=1),
+        rcond=None,
+    )
     return solution[:3], float(np.sqrt(max(solution[3] + (solution[:3] ** 2).sum(), 0.0)))
 
 

@@ -273,8 +273,11 @@ def _words(heading: str) -> str:
     """
     # The power of a unit, such as ^2, is not the number of an axis.
     bare = re.sub(r"[(\[](?![0-4wxyz][)\]]).*?[)\]]|\^-?\d", "", heading)
-    apart = re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", bare)
-    return " ".join(re.findall(r"[a-z0-9]+", apart.lower()))
+    return " ".join(
+        re.findall(
+            r"[a-z0-9]+", re.sub(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", bare).lower()
+        )
+    )
 
 
 def _in_brackets(heading: str) -> str:
@@ -494,8 +497,9 @@ def unit_of_gravity(values: Array) -> tuple[str, float, float]:
 
 def unit_of_field(length: float) -> str:
     """Return the unit in which vectors of this length fit the Earth's field."""
-    units = (unit for unit, (low, high) in FIELD.items() if low <= length <= high)
-    return next(units, "an unknown unit")
+    return next(
+        (unit for unit, (low, high) in FIELD.items() if low <= length <= high), "an unknown unit"
+    )
 
 
 def unit_of_rates(names: Sequence[str]) -> str:

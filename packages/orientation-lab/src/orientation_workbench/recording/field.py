@@ -223,8 +223,11 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
     stretch = float(stretches[0] / stretches[-1])
     fit = FieldFit(shape, centre, strength, float(uncertainty), axes, stretch)
     # A correction that makes things worse is useless.
-    worse = spread_of_lengths(fit.corrected(field)) > spread_of_lengths(field) + 0.02
-    return None if worse or stretch > 3 else fit
+    return (
+        None
+        if stretch > 3 or spread_of_lengths(fit.corrected(field)) > spread_of_lengths(field) + 0.02
+        else fit
+    )
 
 
 def uneven_lengths(means: Array) -> tuple[str, Array, Array, float]:

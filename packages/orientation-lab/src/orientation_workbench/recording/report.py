@@ -212,11 +212,18 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
             f"({still}) and those in which it is held ({len(examined.still) - still})."
         )
         with drawing(2.6, words, "time (s)", "rate (°/s)") as axes:
-            rates = np.degrees(np.linalg.norm(examined.rates[few], axis=1))
-            axes.plot(examined.time[few], rates, color=blue, linewidth=thin)
+            axes.plot(
+                examined.time[few],
+                np.degrees(np.linalg.norm(examined.rates[few], axis=1)),
+                color=blue,
+                linewidth=thin,
+            )
             for stretch in examined.still:
-                ends = examined.time[[stretch.first, stretch.last - 1]]
-                axes.axvspan(*ends, color="#2e7d32" if stretch.still else "#a66300", alpha=0.2)
+                axes.axvspan(
+                    *examined.time[[stretch.first, stretch.last - 1]],
+                    color="#2e7d32" if stretch.still else "#a66300",
+                    alpha=0.2,
+                )
     if "Allan deviation" in examined.facts:
         times, deviations = examined.facts["Allan deviation"]
         noise = noise_of(times, deviations)

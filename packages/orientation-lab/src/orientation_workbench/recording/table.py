@@ -48,8 +48,10 @@ ELSEWHERE = {
     b"MATLAB 5.0": "a MATLAB file: convert it to CSV with writetable or writematrix",
 }
 MISSING = {"", "nan", "null", "none", "na", "n/a", "-", "--"}
-#: A label and its number, as Arduino's plotter takes them, or a number or time that begins a line.
-LABELLED = re.compile(r"(?:^|([A-Za-z_]\w*)\s*[:=]\s*)([-+.\d][^\s,;|]*)")
+#: A label and its number, as Arduino's plotter takes them.
+LABELLED = re.compile(r"(?<![\w.])([A-Za-z_]\w*)\s*[:=]\s*([^\s,;|]+)")
+#: The Arduino IDE's time and arrow before a line, perhaps with a first field that is a number.
+STAMP = re.compile(r"^(\s*\d+:\d\d:\d\d[.\d]*) -> (?=\s*([-+]?[.\d][-+.e\d]*\s*[,;|\t])?)")
 #: The fewest rows of a table.
 FEWEST = 8
 #: The most kinds of lines in a log. If the first column has more words, they only label its rows.
@@ -136,11 +138,20 @@ def read_tables(source: Source, name: str | None = None) -> list[Table]:
     >>> table.columns, table.values[2].tolist()[1:]
     (['time', 'ax', 'ay', 'az'], [2.0, -2.0, 4.5])
 
-    One object of JSON to a line:
+    Labels with several numbers each name no columns:
+
+    >>> [table] = read_tables("acc: 1 2 3 gyr: 4 5 6\\n" * 9)
+    >>> table.values.shape
+    (9, 6)
+
+    One object of JSON to a line, or one list:
 
     >>> [table] = read_tables("\\n".join(f'{{"t": {k}, "acc": [{k}, 2]}}' for k in range(9)))
     >>> table.columns
     ['t', 'acc[0]', 'acc[1]']
+    >>> [table] = read_tables("[1, 2, 3],\\n" * 9)
+    >>> table.values.shape
+    (9, 3)
     """
     if isinstance(source, str) and "\n" in source:
         return _from_text(source, name or "recording")
@@ -235,15 +246,19 @@ def _from_several(files: Iterable[tuple[str, Callable[[], bytes]]], name: str) -
 def _from_text(text: str, name: str) -> list[Table]:
     if text.lstrip()[:1] in "[{":
         return _from_json(text, name)
-    names, lines = _without_labels(text.splitlines())
+    lines = text.splitlines()
+    names, rows = _labels(lines, text)
+    if names:
+        return [_table(rows, name, False, None, names)]
     if sum(line.startswith("---") for line in lines) > 8:
         raise RecordingError(
             f"{name} contains ROS messages: save them as a table with rostopic echo -p or ros2 "
             "topic echo --csv"
         )
     delimiter = max(DELIMITERS, key=lambda one: _numbers_per_line(lines, one))
-    # The Arduino IDE puts the time and an arrow before each line.
-    rows = [_split(line.replace(" -> ", delimiter or " ", 1), delimiter) for line in lines]
+    rows = [
+        _split(line, delimiter) for line in (_stamped(lines, delimiter) if delimiter else lines)
+    ]
     comma = delimiter != "," and sum(_is_comma(field) for row in rows[:400] for field in row) > 10
     first = Counter(row[0] for row in rows if len(row) > 3 and _number(row[0], comma) is None)
     # A time of the day in a form that we cannot read does not name a kind of line.
@@ -252,18 +267,53 @@ def _from_text(text: str, name: str) -> list[Table]:
     ]
     if 1 < len(kinds) <= MOST_KINDS:
         return _from_log(rows, kinds, name, comma)
-    return [_table(rows, name, comma, None, names)]
+    return [_table(rows, name, comma)]
 
 
-def _without_labels(lines: list[str]) -> tuple[list[str], list[str]]:
-    """Return names and lines; from rows such as ``ax:0.1 ay:0.2``, take the labels as names."""
-    sample = [LABELLED.findall(line) for line in lines[len(lines) // 4 :][:200]]
-    names, count = Counter(tuple(name for name, _ in row) for row in sample).most_common(1)[0]
-    if sum(map(bool, names)) < 3 or count < 0.8 * len(sample):
-        return [], lines
-    return [name or "time" for name in names], [
-        ",".join(value for _, value in LABELLED.findall(line)) for line in lines
-    ]
+def _stamped(lines: list[str], delimiter: str) -> list[str]:
+    """Put the delimiter in place of the Arduino IDE's arrows, if all lines then agree."""
+    parted = [STAMP.sub(rf"\1{delimiter}", line) for line in lines]
+    usual = Counter(line.count(delimiter) for line in parted).most_common(1)[0][0]
+    numbers = sum(bool((stamp := STAMP.match(line)) and stamp[2]) for line in lines)
+    # A line without an arrow is a title, or has the columns' names.
+    return (
+        parted
+        if numbers > len(lines) / 2
+        and all(STAMP.match(line) or line.count(delimiter) in (0, usual) for line in lines)
+        else lines
+    )
+
+
+def _labels(lines: list[str], text: str) -> tuple[tuple[str, ...], list[list[str]]]:
+    """Return names and rows of lines such as ``ax:0.1 ay:0.2``; another line is a single field.
+
+    There are no names if more lines differ than a table may lose.
+    """
+    found = [_labelled(line) for line in lines]
+    there = [own for own, row in found if any(row)]
+    names, count = Counter(there or [()]).most_common(1)[0]
+    # With a space before each number, further lines may be another table of a log.
+    some = 0 if re.search(r"[:=][ \t]+[-+.\d]", text) else MOST_BROKEN * len(there)
+    return (
+        names if len(there) - count <= max(2, some) else (),
+        [row if own == names else [line.strip()] for (own, row), line in zip(found, lines)],
+    )
+
+
+def _labelled(line: str) -> tuple[tuple[str, ...], list[str]]:
+    """Return the labels and numbers of a line, if there is nothing else but a time before them."""
+    before, *found = LABELLED.split(line)
+    time = re.sub(r"\s*->\s*$|[\s,;|]+$", "", before).strip()
+    names = ("column 1" if "time" in found[::3] else "time",) * bool(time) + (*found[::3],)
+    fields = [time] * bool(time) + found[1::3]
+    return (
+        (names, fields)
+        if len(found) > 8
+        and len({*names}) == len(names)
+        and not "".join(found[2::3]).strip(" \t,;|")
+        and all(_number(field) is not None for field in fields)
+        else ((), [line.strip()])
+    )
 
 
 def _split(line: str, delimiter: str | None) -> list[str]:
@@ -439,15 +489,20 @@ def _from_log(
 
 
 def _from_json(text: str, name: str) -> list[Table]:
+    # Loggers also write one object or list to a line, without a list around them.
+    lines = re.sub(r"(?<=\}),?(?=\s*\n\s*\{)|(?<=\]),?(?=\s*\n\s*\[)", ",", text.rstrip(", \t\r\n"))
     try:
-        # Loggers also write one object to a line, without commas between them.
-        several = re.sub(r"\}\s*\n\s*\{", "},\n{", text)
-        content = json.loads(text if several == text else f"[{several}]")
+        content = json.loads(f"[{lines}]")
     except json.JSONDecodeError as error:
         raise RecordingError(
-            f"{name} begins like JSON but is not: line {error.lineno}, column {error.colno}: "
-            f"{error.msg}"
+            f"{name} begins like JSON but is not: line {error.lineno}, column "
+            f"{error.colno - (error.lineno == 1)}: {error.msg}"
         ) from None
+    if len(content) > 1 and not any(
+        isinstance(row, dict) or {dict, list} & {*map(type, row)} for row in content
+    ):
+        return [_table([[*map(str, row)] for row in content], name, False)]
+    [content] = content if len(content) == 1 else [content]
     lists = content if isinstance(content, dict) else {name: content}
     kinds: dict[str, list[dict[str, object]]] = {}
     for key, entries in lists.items():
