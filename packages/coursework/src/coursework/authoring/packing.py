@@ -161,7 +161,8 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
     if not course.package:
         files |= {
             f"sealed/{path.relative_to(course.sealed).as_posix()}": path.read_bytes()
-            for path in course.sealed.rglob("*.json")
+            for place in (course.sealed, course.sealed / "variants")
+            for path in place.glob("*.json")
         }
     files[MANIFEST] = manifest(files).encode()
     write_zip(target, {f"exercises/{name}": content for name, content in files.items()})

@@ -648,7 +648,10 @@ class _Answer(_Page):
                 raise ValueError
             return points
         except ValueError:
-            raise Collision(f"{said!r} is not a number of points up to {number(worth)}.") from None
+            raise Collision(
+                f"{repr(said) if said else 'An empty field'} is not a number of points from "
+                f"{number(-worth if least is None else least)} to {number(worth)}."
+            ) from None
 
     def worth_in_force(self, cluster: Cluster, line: str) -> str:
         found = self.graded.standing.worths.get((cluster.question, line))

@@ -11,7 +11,7 @@ document.addEventListener("keydown", (event) => {
   if (field) {
     // In a field, keys only enter text; Escape leaves it.
     if (event.key === "Escape") field.blur();
-    else if (event.key === "Enter" && field.matches("form.decide input")) event.preventDefault();
+    else if (event.key === "Enter" && field.matches("form.decide input:not([name=given])")) event.preventDefault();
     return;
   }
   const found = [...document.querySelectorAll("[data-key]")].find((one) => one.dataset.key === event.key);
