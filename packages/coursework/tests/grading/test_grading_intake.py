@@ -18,6 +18,7 @@ from coursework.grading.assignments import Course, NothingToGrade
 from coursework.grading.grade import grade
 from coursework.grading.judging.term import Assignment, Term
 from coursework.grading.pairing import pair
+from coursework.grading.store import Store
 from coursework.grading.submissions import intake
 from coursework.grading.submissions.roster import BadRoster, Roster
 
@@ -713,7 +714,7 @@ def course(tmp_path):
 
 def sorted_work(folder, course):
     notebooks, _ = intake.take_in(folder, course.assignments)
-    work, refused, _ = pair(notebooks, [], course, Term())
+    work, refused, _ = pair(notebooks, [], course, Term(), Store(folder))
     return {
         (one.student, one.assignment): (
             [notebook.file for notebook in one.notebooks],

@@ -74,9 +74,8 @@ def test_from_a_new_file_to_filled_columns(tmp_path):
     # Every suggested line must work as it is.
     for name in ("hw1", "hw2"):
         begun = f"[assignments.{name}]\n"
-        number = name[-1]
         text = text.replace(
-            begun, f'{begun}due = 2025-10-0{number}T12:00:00\ncolumn = "HW {number}"\n'
+            begun, f'{begun}due = 2025-10-0{name[-1]}T12:00:00\ncolumn = "HW {name[-1]}"\n'
         )
     path.write_text(text)
     collected(course, "ada", "hw1", "2025-10-01 09:00:00")
@@ -165,31 +164,32 @@ def test_what_came_in_time_counts_before_what_came_late(tmp_path):
 
 
 def test_a_group_hands_in_once(course):
-    # Marks from before there was a group stay, and are not merged when they are graded again.
-    for one, load in (("ada", 7), ("ben", 6)):
-        collected(course, one, "hw2", load=load)
+    # A mark from before there was a group stays, and no work is merged when it is graded again.
+    collected(course, "ben", "hw2", "2025-10-14 12:00:00")
+    collected(course, "ada", "hw1", arm=3)
     course.grade()
-    write_term(course, "[groups]", 'team = ["ada", "ben"]')
-    collected(course, "team", "hw1", arm=3)
+    write_term(course, "[groups]", 'aa = ["ada", "ben"]')
+    collected(course, "aa", "hw2", load=6)
     collected(course, "cem", "hw1")
-    course.grade()
-    assert course.points("hw1") == {"team": 4, "cem": 8}
-    said = course.run("why", "ben", "hw2") + course.run("term", "marks")
-    assert course.points("hw2") == {"ada": 8, "ben": 0} and "ben, hw2: 0 of 8 points." in said
-    assert [row["hw2: points"] for row in course.table("course/course.csv")][:2] == ["8", "0"]
-    book = book_of(course)
-    course.export(book)
-    for column, points in (("HW 1 (11)", "4480"), ("HW 2 (12)", "8000")):
-        assert "".join(course.column(book, column).values()) == points
-    # In the folder of one member it is also the group's; one appeal is for both.
-    (course.handed_in / "submitted/team/hw1").rename(course.handed_in / "submitted/ben/hw1")
-    course.grade()
-    assert course.points("hw1") == {"team": 4, "cem": 8}
-    appeals = [{"student": "team", "question": "hw1/arm", "words": "Why?"}]
+    said = course.grade()
+    for one, name in (("ada", "hw1"), ("ben", "hw2")):
+        assert f"In {name}, members of the group 'aa' keep marks of their own: {one}." in said
+    # It was the group's work, and there was no line about the group yet.
+    alone = "grade handed-in/submitted/ada/hw1 --out marks --solutions solutions --student aa"
+    assert "'ada' is now 'aa': we moved the record of hw1" in course.run(*alone.split())
+    assert "In hw1" not in course.grade()
+    assert course.points("hw1") | course.points("hw2") == {"aa": 0, "cem": 8, "ben": 8}
+    said = course.run("term", "marks") + course.run("why", "ben", "hw2")
+    assert "ben, hw2: 8 of 8 points." in said and "late: 30 % lost" in said
+    course.export(book := book_of(course))
+    assert course.column(book, "HW 1 (11)") == {"ada": "4", "ben": "4", "cem": "8", "dan": "0"}
+    assert course.column(book, "HW 2 (12)") == {"ada": "0", "ben": "5.6", "cem": "0", "dan": "0"}
+    assert [row["hw2: points"] for row in course.table("course/course.csv")][:2] == ["0", "8"]
+    # One appeal is for both.
+    appeals = [{"student": "aa", "question": "hw1/arm", "words": "Why?"}]
     course.run("merge", "marks", course.write_table("appeals.csv", appeals))
-    said = course.export(book)
-    assert "  ada: hw1/arm" in said and "  ben: hw1/arm" in said
-    assert "ada (in team), hw1: 4 of 8 points." in course.run("why", "ada", "hw1")
+    assert "  ada: hw1/arm\n  ben: hw1/arm" in course.export(book)
+    assert "ada (in aa), hw1: 4 of 8 points." in course.run("why", "ada", "hw1")
 
 
 def test_more_time_is_for_whom_it_is(course):

@@ -234,7 +234,7 @@ def grade(
         desk.ask(course, (one.assignment for one in handed_in.work), closing)
         if not as_listed:
             demand_own_numbers(handed_in.work, desk.questions, foreign, desk.term.roster)
-        desk.tell(*put_renamed_aside(desk.store, handed_in, desk.journal, dry_run))
+        desk.tell(*put_renamed_aside(desk.store, handed_in, desk.journal, desk.term, dry_run))
         keys = [(one, key_of(one, desk.asked(one)[0], running)) for one in handed_in.work]
         waiting = [one for one, key in keys if not _is_done(desk.store, one, key)]
         kept, refused = len(keys) - len(waiting), len(handed_in.refused)
@@ -260,10 +260,10 @@ def grade(
 
 def _read_and_pair(desk: Desk, course: Course, place: Path, student: str | None) -> HandedIn:
     people = desk.term.roster
-    if student is not None and people and student not in people.people:
+    if student is not None and people and student not in {*people.people, *desk.term.groups}:
         raise BadRoster(f"The roster has no student {student!r}.")
     notebooks, refused = read(place, course, desk.term, student, desk.store.folder)
-    return pair(notebooks, refused, course, desk.term, desk.journal.standing().given)
+    return pair(notebooks, refused, course, desk.term, desk.store)
 
 
 def _is_done(store: Store, one: Work, key: str) -> bool:
@@ -321,8 +321,10 @@ def _keep_refused(store: Store, place: Path, refused: Iterable[Refused]) -> None
     """Write down the refused files, keeping those of other folders."""
     everywhere = store.said(REFUSED, by_name(many(Refused.from_json))) or {}
     everywhere[str(place.resolve())] = tuple(sorted(refused))
-    as_json = {name: [one.as_json() for one in those] for name, those in everywhere.items()}
-    write(store.folder / REFUSED, as_text(as_json))
+    write(
+        store.folder / REFUSED,
+        as_text({name: [one.as_json() for one in those] for name, those in everywhere.items()}),
+    )
 
 
 def with_marks_of(old: Record | None, record: Record) -> Record:
@@ -405,8 +407,7 @@ def regrade(
             raise NothingToGrade(f"There are no records in {desk.store.folder}.")
         course = Course(solutions, desk.term, names)
         desk.ask(course, names, closing)
-        candidates = (desk.marked(record) for record in desk.store.all())
-        laboratory = desk.settle(candidates, REJUDGED, dry_run)
+        laboratory = desk.settle(map(desk.marked, desk.store.all()), REJUDGED, dry_run)
         if not dry_run and laboratory.agreed:
             desk.report(course)
     return laboratory
@@ -417,7 +418,8 @@ def bring_in_decisions(
 ) -> Laboratory:
     """Apply people's decisions to marks and pages, without judging anything."""
     with at_desk(out, show, agree) as (desk, _):
-        candidates = (with_decisions(record, desk.standing) for record in desk.store.all())
-        laboratory = desk.settle(candidates, DECIDED)
+        laboratory = desk.settle(
+            (with_decisions(record, desk.standing) for record in desk.store.all()), DECIDED
+        )
         desk.report()
     return laboratory

@@ -117,11 +117,11 @@ def pair(
     refused: Iterable[Refused],
     course: Course,
     term: Term,
-    given: Collection[tuple[str, str]] = (),
+    store: Store,
 ) -> HandedIn:
     """Sort notebooks by student, or group, and assignment, and decide which count.
 
-    If several members of a group were graded alone, as `given` says, they worked alone.
+    A member of a group who was graded alone, and so has a record of their own, worked alone.
 
     If there are several notebooks for one assignment, the term's rule chooses the one that counts.
     Others count only for questions that it lacks, since an assignment may be handed in as several
@@ -141,15 +141,16 @@ def pair(
         elif not graded:
             left_alone[answered[0]] += 1
         for assignment in graded:
-            group = term.group_of(notebook.student)
-            if sum((one, assignment) in given for one in term.members(group)) > 1:
-                group = notebook.student
-            handed_in.setdefault((group, assignment), []).append(notebook)
-    work = [
-        _work_of(student, assignment, mine, course, term)
-        for (student, assignment), mine in sorted(handed_in.items(), key=lambda entry: entry[0])
-    ]
-    return HandedIn(work, refused, left_alone)
+            owner = store.owner(notebook.student, assignment, term.group_of(notebook.student))
+            handed_in.setdefault((owner, assignment), []).append(notebook)
+    return HandedIn(
+        [
+            _work_of(student, assignment, mine, course, term)
+            for (student, assignment), mine in sorted(handed_in.items(), key=lambda one: one[0])
+        ],
+        refused,
+        left_alone,
+    )
 
 
 def _work_of(
@@ -210,6 +211,7 @@ def say(
             file=show,
         )
     _say_whose(handed_in, folder, show)
+    _say_alone(handed_in, term, Store(folder), show)
     if term.roster:
         _say_absent(handed_in, term, graded, intake.refused_of(Store(folder)), show)
     return _say_foreign(handed_in.work, show)
@@ -266,6 +268,22 @@ def _say_absent(
         if names:
             shown = ", ".join(names[:MOST_SHOWN]) + (", ..." if len(names) > MOST_SHOWN else "")
             print(f"Of the students in the roster, {len(names)} {what}: {shown}.", file=show)
+
+
+def _say_alone(handed_in: HandedIn, term: Term, store: Store, show: TextIO) -> None:
+    for assignment, group in sorted(
+        {(one.assignment, term.group_of(one.student, one.assignment)) for one in handed_in.work}
+    ):
+        if alone := [
+            member for member in term.groups.get(group, ()) if store.owner(member, assignment, "")
+        ]:
+            print(
+                f"In {assignment}, members of the group {group!r} keep marks of their own: "
+                f"{in_a_line(', '.join(alone), 200)}. The group's work counts only for the others "
+                "there, and theirs for nobody else. If the group's only work is a file of theirs, "
+                f"grade that file with --student {group}.",
+                file=show,
+            )
 
 
 def _say_foreign(work: Sequence[Work], show: TextIO) -> list[Foreign]:
@@ -398,7 +416,7 @@ def demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | N
 
 
 def put_renamed_aside(
-    store: Store, handed_in: HandedIn, journal: Journal, dry_run: bool = False
+    store: Store, handed_in: HandedIn, journal: Journal, term: Term, dry_run: bool = False
 ) -> Iterator[str]:
     """Set aside records of students whose very notebooks now belong to another, and report each.
 
@@ -432,7 +450,13 @@ def put_renamed_aside(
             for one in fitting
             if files == {(notebook.file, notebook.digest) for notebook in one.notebooks}
         ]
-        names = [one.student for one in there or fitting]
+        # A group never takes over the work of somebody in the roster who is not in it.
+        names = [
+            one.student
+            for one in there or fitting
+            if student in term.groups.get(one.student, (student,))
+            or not (term.roster and student in term.roster.people)
+        ]
         if names:
             said = f"{student!r} is now {' or '.join(map(repr, names))}: "
             if dry_run:

@@ -75,6 +75,10 @@ class Store:
         except FileNotFoundError:
             return None
 
+    def owner(self, student: str, assignment: str, group: str) -> str:
+        """Return whose record counts for a student: one of their own, or else their group's."""
+        return student if self.place(student, assignment).exists() else group
+
     # Records that are not given yet wait in a folder of their own, so that a run that was killed,
     # or that nobody agreed to, has not run notebooks in vain.
 

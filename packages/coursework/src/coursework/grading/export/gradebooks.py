@@ -123,7 +123,8 @@ class Marks:
         self.students: dict[str, list[Record]] = {}
         for record in self.records:
             for member in term.members(record.student):
-                self.students.setdefault(member, []).append(record)
+                if store.owner(member, record.assignment, record.student) == record.student:
+                    self.students.setdefault(member, []).append(record)
         people = set(term.roster.people) if term.roster else set()
         worth = {record.assignment: record.worth for record in self.records}
         refused = {one.student for one in refused_of(store)}
@@ -175,11 +176,8 @@ class Marks:
         return [student for (student, _), one in self.results.items() if one.state == EXCUSED]
 
     def mark(self, student: str) -> Given:
-        """Return the student's mark for the one assignment, perhaps from before the group."""
-        return (
-            self.given.get((self.term.group_of(student, self.assignment), self.assignment))
-            or self.given[student, self.assignment]
-        )
+        """Return the student's mark for the one assignment."""
+        return self.given[self.students[student][0].student, self.assignment]
 
     def points(self, student: str) -> float:
         result = self.results[student, self.assignment]
@@ -190,8 +188,8 @@ class Marks:
         return [
             question
             for (whose, assignment, question), appeals in self.standing.appeals.items()
-            if whose in (student, self.term.group_of(student, assignment))
-            and assignment in self.assignments
+            if (whose, assignment)
+            in [(record.student, record.assignment) for record in self.students[student]]
             and any(appeal.is_open for appeal in appeals)
         ]
 
@@ -758,17 +756,15 @@ def write_nbgrader(path: str | Path, marks: Marks) -> str:
     """
     rows, pending = [], 0
     for (student, assignment), result in sorted(marks.results.items()):
-        given = marks.given.get(
-            (marks.term.group_of(student, assignment), assignment)
-        ) or marks.given.get((student, assignment))
+        group = marks.term.group_of(student, assignment)
+        given = marks.given.get((marks.store.owner(student, assignment, group), assignment))
         if given and given.undecided:
             pending += 1
         elif given or (result.state == "missing" and result.due):
             raw = given.points - result.held_back if given else 0
-            worth = given.worth if given else result.worth
-            lost = round(raw * result.penalty, 4)
-            points = (raw, lost, round(raw * (1 - result.penalty), 4), worth)
-            rows.append((assignment, "", "", student, "", "", "", *points))
+            worth, lost = given.worth if given else result.worth, round(raw * result.penalty, 4)
+            after = round(raw * (1 - result.penalty), 4)
+            rows.append((assignment, "", "", student, "", "", "", raw, lost, after, worth))
     write(path, table(NBGRADER, rows), private=True)
     return (
         f"{number_of(len(rows), 'mark')}: {path}. "

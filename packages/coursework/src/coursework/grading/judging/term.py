@@ -776,7 +776,11 @@ def result_of(
     A student in ``refused`` without a record handed in only files that cannot be graded. We do not
     know which assignment the file was for, so every missing one stays open.
     """
-    about, group = term.assignments.get(name, Assignment()), term.group_of(student, name)
+    # A member of a group may have worked alone.
+    about, group = (
+        term.assignments.get(name, Assignment()),
+        record.student if record else term.group_of(student, name),
+    )
     due = term.due(group, name)
     state, points, late, penalty, when = "counted", 0.0, False, 0.0, None
     if record is None:

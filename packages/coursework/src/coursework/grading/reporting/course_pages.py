@@ -77,10 +77,10 @@ def write_course(store: Store, term: Term, *, now: datetime.datetime | None = No
         records = {
             name: own_record
             for name in term.assignments
-            # A record from before there was a group stays the student's own.
             if (
-                own_record := store.read(term.group_of(student, name), name)
-                or store.read(student, name)
+                own_record := store.read(
+                    store.owner(student, name, term.group_of(student, name)), name
+                )
             )
         }
         results, total = results_of(student, records, term, worth, now, refused)

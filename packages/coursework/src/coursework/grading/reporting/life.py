@@ -20,11 +20,10 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         The student has no mark for it.
     """
     term, journal = of_term.term_of(store.folder), Journal(store.folder)
-    group, all_given = term.group_of(student, assignment), journal.standing().given
-    # A mark from before there was a group stays the student's own.
-    whose = next((one for one in (group, student) if (one, assignment) in all_given), group)
+    whose = store.owner(student, assignment, term.group_of(student, assignment))
     key = whose, assignment
-    record, given = store.read(*key), all_given.get(key)
+    record, all_given = store.read(*key), journal.standing().given
+    given = all_given.get(key)
     expected = term.roster and student in term.roster.people and assignment in term.assignments
     if given and record is None or not given and not expected:
         own = sorted(name for owner, name in all_given if owner == whose)
@@ -37,9 +36,8 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
             f"{f' Did you mean {near[0]!r}?' if near and not given else ''}"
             f"{'' if all_given else ' If your marks are elsewhere, add --marks and their folder.'}"
         )
-    named = f"{student} (in {whose})" if whose != student else student
     comes_to = _of(given) if given else "nothing that can be graded was handed in"
-    lines = [f"{named}, {assignment}: {comes_to}."]
+    lines = [f"{student}{f' (in {whose})' * (whose != student)}, {assignment}: {comes_to}."]
     refused = [file for file in refused_of(store) if file.student in (student, whose)]
     lines += [f"  cannot be graded: {in_a_line(file.file, 120)}: {file.why}" for file in refused]
     cases = record.cases if record else {}
@@ -51,9 +49,14 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         for other in (record.superseded if record else ())
     ]
     now = datetime.datetime.now(datetime.UTC)
-    senders = {file.student for file in refused}
     result = of_term.result_of(
-        student, assignment, record, term, {assignment: 0}, now, refused=senders
+        student,
+        assignment,
+        record,
+        term,
+        {assignment: 0},
+        now,
+        refused={file.student for file in refused},
     )
     due = f"due {result.due:%Y-%m-%d %H:%M %Z}" if result.due else "no due date"
     late = (
