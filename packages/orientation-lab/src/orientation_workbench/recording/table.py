@@ -289,7 +289,9 @@ def _labels(lines: list[str], text: str) -> tuple[tuple[str, ...], list[list[str
 
     There are no names if more lines differ than a table may lose.
     """
-    found = [_labelled(line) for line in lines]
+    found = [
+        _labelled(line) if ":" in line or "=" in line else ((), [line.strip()]) for line in lines
+    ]
     there = [own for own, row in found if any(row)]
     names, count = Counter(there or [()]).most_common(1)[0]
     # With a space before each number, further lines may be another table of a log.
@@ -303,7 +305,7 @@ def _labels(lines: list[str], text: str) -> tuple[tuple[str, ...], list[list[str
 def _labelled(line: str) -> tuple[tuple[str, ...], list[str]]:
     """Return the labels and numbers of a line, if there is nothing else but a time before them."""
     before, *found = LABELLED.split(line)
-    time = re.sub(r"\s*->\s*$|[\s,;|]+$", "", before).strip()
+    time = before.rstrip(" \t,;|").removesuffix("->").strip()
     names = ("column 1" if "time" in found[::3] else "time",) * bool(time) + (*found[::3],)
     fields = [time] * bool(time) + found[1::3]
     return (
