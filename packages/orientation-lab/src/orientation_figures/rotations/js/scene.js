@@ -480,15 +480,14 @@ const SHOWS = {
   'between-poses'(scene, s, { D }) {
     const [from, to] = [FROM, TO].map((angles) => frames(angles).D), { one, angles } = ways(s.part);
     const line = (kind) => wholeWays().map((both) => scale(1.5, both[kind][1]));
-    scene.tube(line('one'), 0.02, 'accent');
-    scene.tube(line('angles'), 0.016, 'B');
+    // The two ways are what the reader is asked for first, so they are not drawn before that.
+    if (s.free ? apart(D, to) < deg(15) : s.part) scene.tube(line('one'), 0.02, 'accent'), scene.tube(line('angles'), 0.016, 'B');
     for (const [rows, letter] of [[from, '0'], [to, '1']]) {
       scene.ball(scale(1.5, rows[1]), 0.06, 'ink');
       scene.label(scale(1.62, rows[1]), letter, 'ink');
       scene.camera(rows, { alpha: 0.16, lamp: false });
     }
-    if (!s.free) scene.ball(scale(1.5, angles[1]), 0.075, 'B');
-    if (!s.free) scene.camera(angles, { alpha: 0.3, colour: 'B', lamp: false });
+    if (!s.free && s.part) scene.ball(scale(1.5, angles[1]), 0.075, 'B'), scene.camera(angles, { alpha: 0.3, colour: 'B', lamp: false });
     scene.ball(scale(1.5, D[1]), 0.085, 'accent');
     if (s.track.length > 1) scene.tube(s.track.map((rows) => scale(1.54, rows[1])), 0.024, 'D');
   },

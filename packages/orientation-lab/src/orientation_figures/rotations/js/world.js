@@ -344,7 +344,8 @@ class World {
 
   way(D) {
     const needed = this.needed ??= ['one', 'angles'].map((kind) => turnedAlong(wholeWays().map((both) => both[kind])));
-    const { track, free } = this.state;
+    const { track, free, part } = this.state;
+    if (!free && !part) return 'The camera is in pose 0.';
     if (!free) return `The single rotation takes ${say(needed[0])}. The red path, in angles, turns the camera through ${say(needed[1])} in all.`;
     const left = apart(D, frames(TO).D), taken = turnedAlong(track);
     if (left > deg(15)) return `Your path so far: ${say(taken)}. Pose 1 is ${say(left)} away.`;
