@@ -431,10 +431,18 @@ def put_renamed_aside(
         for one in store.all()
     ]
     known = {record[:2] for record in records}
+    # Nobody whom the term still knows by name was renamed.
+    named = {
+        *term.groups,
+        *itertools.chain(*term.groups.values()),
+        *(term.roster.people if term.roster else ()),
+    }
     absent = [
         record
         for record in records
-        if record[:2] not in present and not refused & {file for file, _ in record[2]}
+        if record[:2] not in present
+        and record[0] not in named
+        and not refused & {file for file, _ in record[2]}
     ]
     owners: dict[tuple[str, frozenset[str]], list[Work]] = {}
     for one in work if absent else ():
@@ -450,20 +458,15 @@ def put_renamed_aside(
             for one in fitting
             if files == {(notebook.file, notebook.digest) for notebook in one.notebooks}
         ]
-        # A group never takes over the work of somebody in the roster who is not in it.
-        names = [
-            one.student
-            for one in there or fitting
-            if student in term.groups.get(one.student, (student,))
-            or not (term.roster and student in term.roster.people)
-        ]
+        names = [one.student for one in there or fitting if one.student not in term.groups]
         if names:
             said = f"{student!r} is now {' or '.join(map(repr, names))}: "
             if dry_run:
                 yield f"{said}we would move the record of {assignment}."
                 continue
-            aside = store.put_aside(student, assignment)
-            said += f"we moved the record of {assignment} to {aside}."
+            said += (
+                f"we moved the record of {assignment} to {store.put_aside(student, assignment)}."
+            )
             decisions = [
                 key for key in journal.standing().decisions if key[:2] == (student, assignment)
             ]
