@@ -492,7 +492,9 @@ def _from_log(
 
 def _from_json(text: str, name: str) -> list[Table]:
     # Loggers also write one object or list to a line, without a list around them.
-    lines = re.sub(r"(?<=\}),?(?=\s*\n\s*\{)|(?<=\]),?(?=\s*\n\s*\[)", ",", text.rstrip(", \t\r\n"))
+    lines = re.sub(
+        r"(?<=\}),?(?=[^\S\n]*\n\s*\{)|(?<=\]),?(?=[^\S\n]*\n\s*\[)", ",", text.rstrip(", \t\r\n")
+    )
     try:
         content = json.loads(f"[{lines}]")
     except json.JSONDecodeError as error:
