@@ -77,9 +77,10 @@ def ends(result: object) -> None:
     if not getattr(result, "success", True):
         _outdated.update(dict.fromkeys(names_set_by(_running[0]), STOPPED))
         error = getattr(sys, "last_value", None)
-        print(*(text for words, text in ADVICE.items() if re.search(words, str(error))), end="")
-        checked = re.search(r"\bcheck\(.*", _running[0], re.DOTALL)
-        if type(error) is NameError and checked and error.name in re.findall(r"\w+", checked[0]):
+        # JupyterLite shows an empty output even where nothing is printed.
+        if advice := [text for words, text in ADVICE.items() if re.search(words, str(error))]:
+            print(*advice, end="")
+        if type(error) is NameError and re.search(rf"(?s)\bcheck\(.*\b{error.name}\b", _running[0]):
             print(
                 f"No cell that you have run sets `{error.name}`. If it is spelled right, run the "
                 "cell that sets it, and then run this check again."
