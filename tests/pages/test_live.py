@@ -497,13 +497,16 @@ def test_plain_python_stands_in_for_numpy_and_says_so(shared):
     assert "array([[ 1.25, -0.5 ]," in text
     assert "computed by plain Python instead of NumPy" in page.words()
     assert page.outside() == []
-    # The page fetches NumPy for a method that the stand-in's arrays lack, as it does for a function.
-    page.try_code(3, "a = np.array([1.0, 2])\na.cumprod()")
-    assert "NumPy could not be fetched from cdn.jsdelivr.net" in page.below(3)
+    # The page fetches NumPy for a method that the stand-in's arrays lack, as it does for a function,
+    # for all of its names, and for SymPy's plots, which look up functions that the stand-in lacks.
+    for code in (
+        "a = np.array([1.0, 2])\na.cumprod()",
+        "from numpy import *\narray([1, 2])",
+        "import sympy as sm\nsm.plot(sm.sin(sm.Symbol('x')))",
+    ):
+        page.try_code(3, code)
+        assert "NumPy could not be fetched from cdn.jsdelivr.net" in page.below(3), code
     assert page.try_code(3, "print(repr(a[1]))").strip() == "np.float64(2.0)"
-    # SymPy's plots look up functions that the stand-in lacks.
-    page.try_code(3, "import sympy as sm\nsm.plot(sm.sin(sm.Symbol('x')))")
-    assert "NumPy could not be fetched from cdn.jsdelivr.net" in page.below(3)
 
 
 @pytest.mark.long

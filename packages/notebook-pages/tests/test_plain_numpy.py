@@ -160,7 +160,6 @@ np.random.default_rng(1).random()
 np.einsum('ij,j->i', A, v)
 float(np.array(0.5))
 [1, 2][np.array(1)]
-np.__all__
 """.strip().splitlines()
 
 

@@ -119,8 +119,8 @@ class Part(types.ModuleType):
     def __getattr__(self, name):
         if name in self.offered:
             return self.offered[name]
-        # Python asks any module for these attributes. The real NumPy has the list for `import *`.
-        if name.startswith("__") and name not in ("__version__", "__all__"):
+        # Python asks any module for these attributes.
+        if name.startswith("__") and name != "__version__":
             raise AttributeError(name)
         namesake = real()
         for part in self.__name__.split(".")[1:]:

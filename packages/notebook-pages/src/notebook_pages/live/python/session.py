@@ -211,6 +211,10 @@ class Shell:
 
     def import_module(self, name, globals=None, locals=None, fromlist=(), level=0):
         try:
+            # Only the real NumPy has the list of its names. SymPy, which imports all of NumPy for
+            # `lambdify`, does not come here.
+            if fromlist and "*" in fromlist and name.partition(".")[0] == "numpy":
+                plain_numpy.real()
             return __import__(name, globals, locals, fromlist, level)
         except ModuleNotFoundError as error:
             if fromlist or level or name not in self.missing.reasons or error.name != name:
@@ -225,9 +229,11 @@ class Shell:
             plain_numpy.stand_in()
         else:
             plain_numpy.step_aside(self.names)
-        for name, value in self.names.items():
-            if isinstance(value, Absent) and value.__name__ not in reasons:
-                self.names[name] = importlib.import_module(value.__name__)
+        self.names.update({
+            name: importlib.import_module(value.__name__)
+            for name, value in self.names.items()
+            if isinstance(value, Absent) and value.__name__ not in reasons
+        })  # fmt: skip
 
     # --- figures that move ----------------------------------------------------------------------
 
