@@ -257,7 +257,8 @@ def _from_text(text: str, name: str) -> list[Table]:
         )
     delimiter = max(DELIMITERS, key=lambda one: _numbers_per_line(lines, one))
     rows = [
-        _split(line, delimiter) for line in (_stamped(lines, delimiter) if delimiter else lines)
+        _split(line, delimiter)
+        for line in (_stamped(lines, delimiter) if delimiter and " -> " in text else lines)
     ]
     comma = delimiter != "," and sum(_is_comma(field) for row in rows[:400] for field in row) > 10
     first = Counter(row[0] for row in rows if len(row) > 3 and _number(row[0], comma) is None)
@@ -396,6 +397,9 @@ def _table(
         )
 
     def values(row: Sequence[str]) -> list[float | None]:
+        # Nearly every row consists of plain numbers.
+        with suppress(ValueError):
+            return [float(row[k]) for k in numeric]
         return [_number(row[k], comma) for k in numeric]
 
     begin = next(
@@ -412,9 +416,7 @@ def _table(
             broken.append(
                 f"line {line} has {number_of(len(row), 'column')} where the others have {width}"
             )
-            continue
-        found = values(row)
-        if None in found:
+        elif None in (found := values(row)):
             column = numeric[found.index(None)]
             broken.append(
                 f"line {line}, column {column + 1} ({columns[column]}): {row[column][:30]!r} is "
