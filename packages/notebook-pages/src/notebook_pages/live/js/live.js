@@ -473,10 +473,10 @@ class Page {
 }
 
 export async function open(parts) {
-  const style = element("link");
-  style.rel = "stylesheet";
-  style.href = new URL("./live.css", import.meta.url);
+  const style = Object.assign(element("link"), { rel: "stylesheet", href: new URL("./live.css", import.meta.url) });
   document.head.append(style);
+  // What the cells show contains formulas, and without these rules each formula is there twice.
+  await new Promise((arrived) => (style.onload = style.onerror = arrived));
   const page = new Page(parts);
   await page.bring();
   return page;
