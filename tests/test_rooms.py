@@ -4,6 +4,7 @@ import ast
 import json
 import subprocess
 import sys
+from functools import cache
 from importlib import metadata
 
 import pytest
@@ -37,13 +38,20 @@ def folder_of(room):
     return PACKAGES.get(package, PAGES).joinpath(*inner)
 
 
+@cache
+def imports(path):
+    """Return the imports of a module, wherever in it they are."""
+    nodes = ast.walk(ast.parse(path.read_text("utf8")))
+    return [node for node in nodes if isinstance(node, (ast.Import, ast.ImportFrom))]
+
+
 def imported(path, sources):
     """Iterate over the absolute names that a module imports, including relative imports."""
     package = path.relative_to(sources).parent.parts
-    for node in ast.walk(ast.parse(path.read_text("utf8"))):
+    for node in imports(path):
         if isinstance(node, ast.Import):
             yield from (name.name for name in node.names)
-        elif isinstance(node, ast.ImportFrom):
+        else:
             start = package[: len(package) - node.level + 1] if node.level else ()
             module = ".".join([*start, *([node.module] if node.module else [])])
             # The imported name may be a module itself.

@@ -173,52 +173,54 @@ def test_good_book(tmp_path):
         assert expected in text, text
 
 
-# The cells of a chapter, and the words of each of its faults.
+# The cells of a chapter, and the words of each of its faults: those of its text, then of its code.
 FAULTS = {
-    "a cell fails": (chapter(code="1 / 0"), "ZeroDivisionError"),
-    "a cell warns": (
-        chapter(code="import warnings\nwarnings.warn('old')\n" + GOOD_FIGURE),
-        "stderr",
+    "TeX is wrong and a cell fails": (
+        chapter(
+            GOOD_TEXT.replace("Quoted", r"Bad $\frac{a$ here").replace("a = b", r"a = \nosuch b"),
+            "1 / 0",
+        ),
+        "tex-is-wrong-and-a-cell-fails.ipynb:26 (cell 1): WARNING: bad TeX",
+        "Undefined control sequence",
+        "ZeroDivisionError",
     ),
-    "what it names is not there": (
+    "what it names is not there and a cell warns": (
         chapter(
             GOOD_TEXT + "\n{numref}`fig-nowhere`, {eq}`eq-nowhere`, {ref}`section-nowhere`, "
-            "[it](#link-nowhere) and a {term}`thing`.\n"
+            "[it](#link-nowhere) and a {term}`thing`.\n",
+            "import warnings\nwarnings.warn('old')\n" + GOOD_FIGURE,
         ),
         "fig-nowhere",
         "eq-nowhere",
         "section-nowhere",
         "link-nowhere",
         "thing",
+        "stderr",
     ),
-    "TeX is wrong": (
+    "a question has no replies and a figure says nothing": (
+        chapter(GOOD_TEXT.replace("\n: ", "\n"), FIGURE.format("")),
+        "must end with its choices",
+        "no alternative text",
+    ),
+    "no choice is right, a number has no other and a figure says too little": (
         chapter(
-            GOOD_TEXT.replace("Quoted", r"Bad $\frac{a$ here").replace("a = b", r"a = \nosuch b")
+            GOOD_TEXT.replace(":answer: B", ":answer: C").replace("anything else", "0.7"),
+            FIGURE.format('role="img" aria-label="a thin line"'),
         ),
-        "tex-is-wrong.ipynb:26 (cell 1): WARNING: bad TeX",
-        "Undefined control sequence",
-    ),
-    "a figure says nothing": (chapter(code=FIGURE.format("")), "no alternative text"),
-    "a figure says too little": (
-        chapter(code=FIGURE.format('role="img" aria-label="a thin line"')),
-        "found 'a thin line'",
-    ),
-    "a plot says nothing": (chapter(code=PLOT), "no alternative text"),
-    "no choice is right and a number has no other": (
-        chapter(GOOD_TEXT.replace(":answer: B", ":answer: C").replace("anything else", "0.7")),
         "the right answer is C",
         "for `anything else`",
+        "found 'a thin line'",
     ),
-    "a question has no replies": (
-        chapter(GOOD_TEXT.replace("\n: ", "\n")),
-        "must end with its choices",
-    ),
-    "a question has no label and an exercise is too hard": (
+    "a question has no label, an exercise is too hard and a plot says nothing": (
         chapter(
-            GOOD_TEXT.replace(":label: predict-one\n", "").replace("difficulty: 2", "difficulty: 4")
+            GOOD_TEXT.replace(":label: predict-one\n", "").replace(
+                "difficulty: 2", "difficulty: 4"
+            ),
+            PLOT,
         ),
         "needs a `:label:`",
         "from 1 to 3",
+        "no alternative text",
     ),
 }
 LABELS = (
@@ -233,7 +235,7 @@ LABELS = (
 
 
 def file_name(fault):
-    return fault.lower().replace(" ", "-")
+    return fault.lower().replace(",", "").replace(" ", "-")
 
 
 def own_labels(cells, name):

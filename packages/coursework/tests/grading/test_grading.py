@@ -1200,7 +1200,9 @@ def test_for_nbgrader_and_gradescope(course, tmp_path, capsys):
 # ---- the sample class, and the commands
 
 
-def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
+def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course, monkeypatch):
+    # One of its cells never ends, and the usual limits allow that for twenty seconds.
+    monkeypatch.setattr("coursework.grading.execution.sandbox.Limits", lambda: LIMITS)
     solutions = str(course / "solutions")
     for name in ("class", "again"):
         make_class(tmp_path / name, 60, 3, ["turns", "axes"], solutions)
