@@ -76,7 +76,7 @@ def test_each_step_is_seen_whole_with_its_line(opened, name):
     assert 3 <= count <= 25
 
 
-def test_keys_work_after_clicks_and_on_what_is_moved(opened):
+def test_keys_work_after_clicks_and_the_page_is_left_whole_where_it_was(opened):
     page = opened()
     page.locator("button.lecture-mode").click()
     assert step(page) == 1
@@ -100,13 +100,22 @@ def test_keys_work_after_clicks_and_on_what_is_moved(opened):
     page.keyboard.type("3\n")
     page.keyboard.press("F5")  # the button with which a remote control starts its show
     assert step(page) == 3 and page.evaluate("document.fullscreenElement !== null")
-
-
-def test_the_page_is_left_where_it_was(opened):
-    page = opened()
+    page.evaluate("document.exitFullscreen()")
+    page.wait_for_function("document.fullscreenElement === null")
+    if page.locator(".lecture-bar").count():
+        page.keyboard.press("Escape")
     page.evaluate("document.querySelectorAll('h2')[3].scrollIntoView({ behavior: 'instant' })")
     before = page.evaluate("[scrollY, document.querySelectorAll('article *').length]")
     begin(page)
+    page.emulate_media(media="print")
+    hidden = (
+        "all => all.filter((one) => one.textContent.trim() && "
+        "!one.getBoundingClientRect().height).length"
+    )
+    of_page = page.locator(".bd-article > section > section > :is(p, h2, div.math)")
+    assert of_page.evaluate_all(hidden) == 0
+    assert not page.locator(".lecture-line").is_visible()
+    page.emulate_media(media="screen")
     page.keyboard.press("End")
     page.keyboard.press("Escape")
     assert page.evaluate("[scrollY, document.querySelectorAll('article *').length]") == before
@@ -206,21 +215,6 @@ def test_the_essay_is_lectured_by_its_stops(opened):
         assert drawing["width"] * drawing["height"] > 0.5 * 1280 * 720
         assert drawing["y"] + drawing["height"] <= line["y"]
         page.keyboard.press("PageDown")
-
-
-def test_on_paper_the_page_is_whole(opened):
-    page = opened()
-    begin(page)
-    page.emulate_media(media="print")
-    hidden = (
-        "all => all.filter((one) => one.textContent.trim() && "
-        "!one.getBoundingClientRect().height).length"
-    )
-    assert (
-        page.locator(".bd-article > section > section > :is(p, h2, div.math)").evaluate_all(hidden)
-        == 0
-    )
-    assert not page.locator(".lecture-line").is_visible()
 
 
 def test_marks_are_in_no_page_notebook_or_script():

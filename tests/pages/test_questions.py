@@ -37,11 +37,13 @@ def pages_with_questions():
 
 
 def test_every_reply_says_something():
-    from bs4 import BeautifulSoup
+    from bs4 import BeautifulSoup, SoupStrainer
 
+    of_questions = SoupStrainer(class_="question")
     assert pages_with_questions()
     for path in pages_with_questions():
-        for box in BeautifulSoup(path.read_text("utf8"), "html.parser").select(".question"):
+        text = path.read_text("utf8")
+        for box in BeautifulSoup(text, "lxml", parse_only=of_questions).select(".question"):
             replies = box.select(".replies li > div")
             assert len(replies) >= 2, box["id"]
             assert all(len(reply.get_text().split()) >= 2 for reply in replies), (
@@ -52,8 +54,23 @@ def test_every_reply_says_something():
 
 
 def test_prediction_covers_what_follows_until_it_is_made(context, site):
+    """Made by keyboard or not, it can be seen without committing, by a link and on paper."""
     page = opened(context, site)
+    recap = page.locator(".recap .question").first
+    recap.locator("input").first.focus()
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    assert recap.locator(".result .verdict").is_visible()
+    assert page.locator(".recap .score").inner_text().startswith("1 of ")
+    name = page.evaluate("document.querySelector('.covered [id]').id")
+    page.goto(f"{site}{CHAPTER}.html#{name}")
+    page.reload()
+    assert page.evaluate(f"document.getElementById('{name}').closest('.covered')") is None
     box = page.locator(COVERING).first
+    box.get_by_role("button", name="Show the answer").click()
+    assert box.locator(".replies li.right").is_visible()
+    page.goto(f"{site}{CHAPTER}.html")
     label, right = box.get_attribute("id"), box.get_attribute("data-answer")
     covered = page.locator(f"#{label} + .covered")
     assert (
@@ -66,6 +83,7 @@ def test_prediction_covers_what_follows_until_it_is_made(context, site):
     assert 10 < covered.bounding_box()["height"] < 40
     box.get_by_role("button", name="That is my prediction").click()
     assert box.get_by_role("status").inner_text() == "Choose one first."
+    assert label not in page.evaluate(KEPT)["pages"][CHAPTER]["answers"]
     wrong = box.locator(f'input:not([value="{right}"])').first
     wrong.check()
     box.get_by_role("button", name="That is my prediction").click()
@@ -88,25 +106,11 @@ def test_prediction_covers_what_follows_until_it_is_made(context, site):
     assert page.locator(f'#{label} input[value="{right}"]').is_checked()
     assert page.locator(f"#{label} + .covered").count() == 0
     assert violations(page, "'.question'") == []
-
-
-def test_by_keyboard(context, site):
-    page = opened(context, site)
-    box = page.locator(".recap .question").first
-    box.locator("input").first.focus()
-    page.keyboard.press("ArrowDown")
-    page.keyboard.press("Tab")
-    page.keyboard.press("Enter")
-    assert box.locator(".result .verdict").is_visible()
-    assert page.locator(".recap .score").inner_text().startswith("1 of ")
-
-
-def test_answer_can_be_seen_without_committing(context, site):
-    page = opened(context, site)
-    box = page.locator(COVERING).first
-    box.get_by_role("button", name="Show the answer").click()
-    assert box.locator(".replies li.right").is_visible()
-    assert page.evaluate(KEPT).get("pages", {}).get(CHAPTER, {}).get("answers", {}) == {}
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    page.emulate_media(media="print")
+    assert page.locator("details.replies:not([open])").count() == 0
+    assert page.locator(".covered").count() == 0
+    assert not page.get_by_label("Predictions").is_visible()
 
 
 def test_predictions_are_asked_open_or_left_out_as_the_reader_likes(context, site):
@@ -125,14 +129,6 @@ def test_predictions_are_asked_open_or_left_out_as_the_reader_likes(context, sit
         )
         assert way != "all open" or page.locator(f"#{label} .replies li.right").is_visible()
     assert page.evaluate(KEPT).get("pages", {}).get(CHAPTER, {}).get("answers", {}) == {}
-
-
-def test_link_to_what_is_covered_uncovers_it(context, site):
-    page = opened(context, site)
-    name = page.evaluate("document.querySelector('.covered [id]').id")
-    page.goto(f"{site}{CHAPTER}.html#{name}")
-    page.reload()
-    assert page.evaluate(f"document.getElementById('{name}').closest('.covered')") is None
 
 
 def test_reads_as_question_and_answer_without_script(browser, site):
@@ -234,15 +230,4 @@ def test_right_answer_of_the_checker_counts(context, site):
     )
     page.wait_for_function(
         f"({KEPT})().pages?.['{CHAPTER}']?.checked.includes('chapters/right-handed')"
-    )
-
-
-def test_paper_shows_the_answers(context, site):
-    page = opened(context, site)
-    page.evaluate("dispatchEvent(new Event('beforeprint'))")
-    page.emulate_media(media="print")
-    assert (
-        page.locator("details.replies:not([open])").count() == 0
-        and page.locator(".covered").count() == 0
-        and not page.get_by_label("Predictions").is_visible()
     )

@@ -13,6 +13,7 @@ from test_answers import ANSWER, BLANK, EMPTY, EXERCISE, OTHER, Tab, fill
 from test_answers import context as context  # noqa: PLC0414 -- a fixture
 from test_questions import CHAPTER, opened
 
+SMALL = "exercises/orientation-filters"  # a short page, where its content does not matter
 NEWER_LIST = {"format": 99, "edition": "x"}
 PUT = (
     "(kept) => { for (const [key, text] of Object.entries(kept)) localStorage.setItem(key, text); }"
@@ -47,7 +48,7 @@ AT_ONE_MOMENT = """([moment, number, question]) => new Promise((done) => {
 
 
 def test_three_tabs_that_write_at_one_moment_lose_nothing(context, site):
-    tabs = [opened(context, site) for _ in range(3)]
+    tabs = [opened(context, site, SMALL) for _ in range(3)]
     moment = (time.time() + 2) * 1000
     for number, tab in enumerate(tabs):
         tab.evaluate(
@@ -56,8 +57,8 @@ def test_three_tabs_that_write_at_one_moment_lose_nothing(context, site):
         )
     for tab in tabs:
         tab.evaluate("() => window.over")
-    page = opened(context, site)
-    here = page.evaluate(HERE)[CHAPTER]
+    page = opened(context, site, SMALL)
+    here = page.evaluate(HERE)[SMALL]
     names = {f"{number}-{k}" for number in range(3) for k in range(20)}
     assert {f"section-{name}" for name in names} <= set(here["read"])
     assert {f"question-{name}" for name in names} <= set(here["answers"])
@@ -91,7 +92,7 @@ def test_three_tabs_that_type_in_one_cell_at_one_moment_lose_nothing(context, si
 
 def test_what_a_run_takes_away_of_its_own_stays_away(context, site):
     """Only text that another tab has written meanwhile is joined; a reviewed mistake is gone."""
-    page = opened(context, site)
+    page = opened(context, site, SMALL)
     keep = (
         "([text, base]) => bookStore.keepTries(JSON.stringify(text), Date.now(), base && "
         "JSON.stringify(base))"
