@@ -446,30 +446,25 @@ def test_nine_numbers_says_what_the_module_says(open_figure, example):
     assert page.locator(".checks .fails").count() == 0
 
 
-def test_nine_numbers_leaves_alone_what_is_being_typed(open_figure):
-    page = open_figure("nine_numbers")
-    field = page.get_by_label("row x, column y")
-    field.fill("")
-    assert field.get_attribute("aria-invalid") == "true"
-    field.type("-0.25")
-    settle(page)
-    assert field.input_value() == "-0.25" and field.get_attribute("aria-invalid") == "false"
-
-
-@pytest.mark.parametrize(
-    "kind, label, typed, used",
-    [
-        ("nine_numbers", "row x, column y", "99", "10"),
-        ("simple", "theta in degrees", "270", "-90"),
-        ("simple", "theta in degrees", "", "35"),
-    ],
-)
-def test_after_enter_a_field_shows_what_the_figure_uses(open_figure, kind, label, typed, used):
-    field = open_figure(kind).get_by_label(label)
-    field.fill(typed)
-    assert field.get_attribute("aria-invalid") == "true"
-    field.press("Enter")
-    assert (field.input_value(), field.get_attribute("aria-invalid")) == (used, "false")
+def test_after_enter_a_field_shows_what_the_figure_uses(open_figure):
+    """What is being typed is left alone until then."""
+    numbers_page, simple = open_figure("nine_numbers"), open_figure("simple")
+    entry = numbers_page.get_by_label("row x, column y")
+    angle = simple.get_by_label("theta in degrees")
+    for field, typed, used in (
+        (angle, "", "35"),
+        (angle, "270", "-90"),
+        (entry, "99", "10"),
+    ):
+        field.fill(typed)
+        assert field.get_attribute("aria-invalid") == "true"
+        field.press("Enter")
+        assert (field.input_value(), field.get_attribute("aria-invalid")) == (used, "false")
+    entry.fill("")
+    assert entry.get_attribute("aria-invalid") == "true"
+    entry.type("-0.25")
+    settle(numbers_page)
+    assert entry.input_value() == "-0.25" and entry.get_attribute("aria-invalid") == "false"
 
 
 # What makes a dragged figure fast is tested here.

@@ -334,70 +334,6 @@ def table(page):
     )
 
 
-def test_what_it_says_is_what_python_says(open_figure):
-    page, figure = open_figure("motion"), MotionFigure()
-    fault = abs(figure.dcm @ figure.dcm.T - np.eye(3)).max()
-    assert f"departs from orthogonality by {float(f'{fault:.2g}'):g}" in words(page)
-    assert f"{np.linalg.norm(figure.dcm, axis=1).max():.3g} long" in words(page)
-    assert [row[0] for row in table(page)] == ["Matrix", "Quaternion", "Euler angles"]
-    assert table(page)[0][1] == f"{float(f'{fault:.2g}'):g}"
-
-
-def test_play_pause_reset(open_figure):
-    page = open_figure("motion")
-    page.get_by_role("button", name="Reset").click()
-    settle(page)
-    assert time_of(page) == 0 and all("L" not in data for data in curves(page))
-    page.get_by_role("button", name="Play").click()
-    page.wait_for_function("document.querySelector('.player input').value > 1")
-    page.get_by_role("button", name="Pause").click()
-    settle(page)
-    stopped = time_of(page)
-    assert stopped > 1 and all("L" in data for data in curves(page))
-    settle(page)
-    assert time_of(page) == stopped
-    # Back in what has been computed: the curves stay.
-    grown = curves(page)
-    set_time(page, 0.5)
-    assert curves(page) == grown
-    page.get_by_role("button", name="Reset").click()
-    settle(page)
-    assert time_of(page) == 0 and all("L" not in data for data in curves(page))
-
-
-def test_restoring_changes_the_plot_and_brings_the_triad_back(open_figure):
-    page = open_figure("motion")
-    drifted = curves(page)
-    page.get_by_label("Restore after every step").check()
-    settle(page)
-    assert curves(page)[:2] != drifted[:2]
-    assert [row[1] for row in table(page)] == ["< 10⁻¹⁵"] * 3
-    page.get_by_label("Restore after every step").uncheck()
-    settle(page)
-    assert curves(page) == drifted
-
-
-def test_every_control_changes_the_run(open_figure):
-    page = open_figure("motion")
-    before = curves(page)
-    for change in (
-        lambda: page.get_by_label("Method", exact=True).select_option("Runge-Kutta"),
-        lambda: page.get_by_label("Step in milliseconds").fill("50"),
-        lambda: page.get_by_label("Disturbance in radians per second").fill("0.2"),
-        lambda: page.get_by_role("button", name="a book").click(),
-        lambda: page.get_by_label("Moment of inertia about x in gram square metres").fill("8"),
-        lambda: page.get_by_label("Spin about", exact=True).select_option("z"),
-    ):
-        change()
-        settle(page)
-        after = curves(page)
-        assert after != before
-        before = after
-    assert "the block does not flip" in words(page)
-    page.get_by_role("radio", name="Euler angles").check()
-    page.wait_for_function("document.querySelector('.words').textContent.includes('gimbal lock')")
-
-
 def test_a_hopeless_step_says_so(open_figure):
     page = open_figure("motion")
     page.get_by_label("Step in milliseconds").fill("100")
@@ -407,8 +343,46 @@ def test_a_hopeless_step_says_so(open_figure):
     assert time_of(page) < 19
 
 
-def test_moments_that_no_body_has_are_refused_and_not_drawn(open_figure):
-    page = open_figure("motion")
+@pytest.mark.parametrize(
+    "moments, texts",
+    [
+        ((5, 3, 7), ["middle moment", "smallest moment", "largest moment"]),
+        ((5, 5, 7), ["equal to another", "equal to another", "largest moment"]),
+    ],
+)
+def test_the_axes_are_told_apart_by_their_moments(open_figure, moments, texts):
+    page = open_figure(MotionFigure(moments=moments, axis="x"))
+    options = page.get_by_label("Spin about", exact=True).locator("option").all_text_contents()
+    assert options == [f"{axis} ({text})" for axis, text in zip("xyz", texts)]
+
+
+def test_a_reader_plays_restores_and_changes_the_run(open_figure):
+    """What it says is what Python says, and every step of the walk leads back to where it began."""
+    page, figure = open_figure("motion"), MotionFigure()
+    fault = abs(figure.dcm @ figure.dcm.T - np.eye(3)).max()
+    assert f"departs from orthogonality by {float(f'{fault:.2g}'):g}" in words(page)
+    assert f"{np.linalg.norm(figure.dcm, axis=1).max():.3g} long" in words(page)
+    assert [row[0] for row in table(page)] == ["Matrix", "Quaternion", "Euler angles"]
+    assert table(page)[0][1] == f"{float(f'{fault:.2g}'):g}"
+    for name, value_text in (
+        ("Time", "Time, 6 seconds"),
+        ("Step", "Step, 10 milliseconds"),
+        ("Disturbance", "Disturbance, 0.01 radians per second"),
+        ("Moment of inertia about y", "Moment of inertia about y, 16 gram square metres"),
+    ):
+        slider = page.locator(f'input[type=range][aria-label="{name}"]')
+        assert slider.get_attribute("aria-valuetext") == value_text
+    page.wait_for_function(
+        "document.querySelector('[role=status]').textContent.startsWith('After 6.0 s')"
+    )
+    drifted = curves(page)
+    page.get_by_label("Restore after every step").check()
+    settle(page)
+    assert curves(page)[:2] != drifted[:2]
+    assert [row[1] for row in table(page)] == ["< 10⁻¹⁵"] * 3
+    page.get_by_label("Restore after every step").uncheck()
+    settle(page)
+    assert curves(page) == drifted
     field = {axis: f"Moment of inertia about {axis} in gram square metres" for axis in "xyz"}
     before = curves(page), drawing(page)
     type_number(page, field["z"], 20)
@@ -433,38 +407,24 @@ def test_moments_that_no_body_has_are_refused_and_not_drawn(open_figure):
         and page.locator(".slider.refused").count() == 0
     )
     assert (curves(page), drawing(page)) == before
-
-
-@pytest.mark.parametrize(
-    "moments, texts",
-    [
-        ((5, 3, 7), ["middle moment", "smallest moment", "largest moment"]),
-        ((5, 5, 7), ["equal to another", "equal to another", "largest moment"]),
-    ],
-)
-def test_the_axes_are_told_apart_by_their_moments(open_figure, moments, texts):
-    page = open_figure(MotionFigure(moments=moments, axis="x"))
-    options = page.get_by_label("Spin about", exact=True).locator("option").all_text_contents()
-    assert options == [f"{axis} ({text})" for axis, text in zip("xyz", texts)]
-
-
-def test_sliders_tell_their_values_and_units(open_figure):
-    page = open_figure("motion")
-    for name, value_text in (
-        ("Time", "Time, 6 seconds"),
-        ("Step", "Step, 10 milliseconds"),
-        ("Disturbance", "Disturbance, 0.01 radians per second"),
-        ("Moment of inertia about y", "Moment of inertia about y, 16 gram square metres"),
-    ):
-        slider = page.locator(f'input[type=range][aria-label="{name}"]')
-        assert slider.get_attribute("aria-valuetext") == value_text
-    page.wait_for_function(
-        "document.querySelector('[role=status]').textContent.startsWith('After 6.0 s')"
-    )
-
-
-def test_dragging_in_the_plot_goes_through_time(open_figure):
-    page = open_figure("motion")
+    page.get_by_role("button", name="Reset").click()
+    settle(page)
+    assert time_of(page) == 0 and all("L" not in data for data in curves(page))
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_function("document.querySelector('.player input').value > 1")
+    page.get_by_role("button", name="Pause").click()
+    settle(page)
+    stopped = time_of(page)
+    assert stopped > 1 and all("L" in data for data in curves(page))
+    settle(page)
+    assert time_of(page) == stopped
+    # Back in what has been computed: the curves stay.
+    grown = curves(page)
+    set_time(page, 0.5)
+    assert curves(page) == grown
+    page.get_by_role("button", name="Reset").click()
+    settle(page)
+    assert time_of(page) == 0 and all("L" not in data for data in curves(page))
     box = page.locator(".plot").bounding_box()
     at = lambda second: box["x"] + box["width"] * (52 + 296 * second / 20) / 360
     page.mouse.move(at(2), box["y"] + 60)
@@ -473,3 +433,20 @@ def test_dragging_in_the_plot_goes_through_time(open_figure):
     page.mouse.move(at(5), box["y"] + 200)
     page.mouse.up()
     page.wait_for_function("Math.abs(document.querySelector('.player input').value - 5) < 0.1")
+    before = curves(page)
+    for change in (
+        lambda: page.get_by_label("Method", exact=True).select_option("Runge-Kutta"),
+        lambda: page.get_by_label("Step in milliseconds").fill("50"),
+        lambda: page.get_by_label("Disturbance in radians per second").fill("0.2"),
+        lambda: page.get_by_role("button", name="a book").click(),
+        lambda: page.get_by_label("Moment of inertia about x in gram square metres").fill("8"),
+        lambda: page.get_by_label("Spin about", exact=True).select_option("z"),
+    ):
+        change()
+        settle(page)
+        after = curves(page)
+        assert after != before
+        before = after
+    assert "the block does not flip" in words(page)
+    page.get_by_role("radio", name="Euler angles").check()
+    page.wait_for_function("document.querySelector('.words').textContent.includes('gimbal lock')")
