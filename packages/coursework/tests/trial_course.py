@@ -1,4 +1,4 @@
-"""A course of one notebook for the tests of authoring."""
+"""Notebooks for all tests, and a course of one notebook for the tests of authoring."""
 
 from pathlib import Path
 
@@ -23,19 +23,19 @@ def made_in(folder, sources=None, exercises=None, sealed=None):
     )
 
 
+def notebook(cells):
+    """Return a notebook of cells, each a source of code or a kind, a source and tags."""
+    made = nbformat.v4.new_notebook()
+    for number, cell in enumerate(cells):
+        kind, source, *tags = ("code", cell) if isinstance(cell, str) else cell
+        new = nbformat.v4.new_code_cell if kind == "code" else nbformat.v4.new_markdown_cell
+        made.cells.append(new(source, id=f"cell-{number}", metadata={"tags": tags}))
+    return made
+
+
 def write_source(folder, *cells, name="trial"):
-    notebook = nbformat.v4.new_notebook()
-    for number, (kind, text, *tags) in enumerate(cells):
-        cell = (
-            nbformat.v4.new_code_cell(text)
-            if kind == "code"
-            else nbformat.v4.new_markdown_cell(text)
-        )
-        cell["id"] = f"cell-{number}"
-        cell.metadata["tags"] = list(tags)
-        notebook.cells.append(cell)
     folder.mkdir(exist_ok=True)
-    nbformat.write(notebook, folder / f"{name}.ipynb")
+    nbformat.write(notebook(cells), folder / f"{name}.ipynb")
     return folder / f"{name}.ipynb"
 
 

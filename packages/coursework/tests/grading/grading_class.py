@@ -5,6 +5,7 @@ import io
 import json
 
 import nbformat
+from trial_course import notebook
 
 from coursework.grading.execution.sandbox import Limits
 from coursework.grading.grade import grade
@@ -22,14 +23,15 @@ LIMITS = Limits(
 )
 
 
-def grade_quietly(submissions, out, solutions, scheduler=None):
-    """Grade within these limits, without output."""
+def grade_quietly(submissions, out, solutions, scheduler=None, show=None, **more):
+    """Grade within these limits, without output, or with all output in ``show``."""
     return grade(
         submissions,
         out,
         solutions=solutions,
         running=Running(limits=LIMITS, scheduler=scheduler),
-        show=io.StringIO(),
+        show=show or io.StringIO(),
+        **more,
     )
 
 
@@ -115,21 +117,6 @@ RIGHT = {
     "axes/length": "length = sm.sqrt(3*q**2)*sm.sign(q)",
 }
 SETUP = {"turns": SOURCES["turns"][1][1], "axes": SOURCES["axes"][0][1]}
-
-
-def notebook(cells):
-    """Return a notebook of cells, given as pairs of a kind and a source, or as sources of code."""
-    made = nbformat.v4.new_notebook()
-    for number, cell in enumerate(cells):
-        kind, source = cell if isinstance(cell, tuple) else ("code", cell)
-        new = (
-            nbformat.v4.new_code_cell(source)
-            if kind == "code"
-            else nbformat.v4.new_markdown_cell(source)
-        )
-        new["id"] = f"cell-{number}"
-        made.cells.append(new)
-    return made
 
 
 def write_sources(folder, changes=()):

@@ -9,19 +9,43 @@ from pathlib import Path
 
 import nbformat
 import pytest
+from trial_course import notebook
 
 from coursework.__main__ import main
 
 SECRET = "5eed" * 16
 
 
-def notebook(*cells):
-    made = nbformat.v4.new_notebook()
-    for number, source in enumerate(cells):
-        markdown = source.startswith("#!")
-        new = nbformat.v4.new_markdown_cell if markdown else nbformat.v4.new_code_cell
-        made.cells.append(new(source.removeprefix("#!"), id=f"cell-{number}"))
-    return made
+def run_command(*words, fails=False, stdin=""):
+    """Run the command, and return all of its output.
+
+    It runs in this process, which has loaded SymPy; in a process of its own, it would take
+    seconds.
+    """
+    said, status = io.StringIO(), 0
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        with pytest.MonkeyPatch.context() as patched:
+            patched.setattr(sys, "stdin", io.StringIO(stdin))
+            try:
+                main([*map(str, words)])
+            except SystemExit as ended:
+                status = ended.code
+                print(status or "")
+    assert bool(status) == fails, said.getvalue()
+    return said.getvalue()
+
+
+def read_table(path):
+    with open(path, encoding="utf8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def write_table(path, rows):
+    with open(path, "w", encoding="utf8", newline="") as file:
+        writer = csv.DictWriter(file, rows[0])
+        writer.writeheader()
+        writer.writerows(rows)
+    return path
 
 
 class Course:
@@ -46,13 +70,13 @@ class Course:
         for question, (right, worth) in self.assignments[name].items():
             kind = "free text" if isinstance(right, str) else "expression"
             cells += [
-                f"#!How much is {question}?",
+                ("markdown", f"How much is {question}?"),
                 f"### BEGIN SOLUTION\n{question} = {right!r}\n### END SOLUTION",
                 f"check('{name}/{question}', {question})\n### BEGIN HIDDEN TESTS\n"
                 f"question('{name}/{question}', kind={kind!r}, worth={worth})\n"
                 "### END HIDDEN TESTS",
             ]
-        nbformat.write(notebook(*cells), self.solutions / f"{name}.ipynb")
+        nbformat.write(notebook(cells), self.solutions / f"{name}.ipynb")
 
     def change(self, name, **questions):
         """Change the source to another right answer or another worth."""
@@ -66,7 +90,7 @@ class Course:
             answer = given.get(question, right)
             cells.append(f"{question} = {'...' if answer is None else repr(answer)}")
             cells.append(f"check('{name}/{question}', {question})")
-        return notebook(*cells)
+        return notebook(cells)
 
     def hands_in(self, student, name, file=None, **given):
         path = self.handed_in / student / (file or f"{name}.ipynb")
@@ -74,27 +98,9 @@ class Course:
         nbformat.write(self.answers(name, **given), path)
         return path
 
-    def run(self, *words, fails=False, stdin=""):
-        """Run the command, and return all of its output.
-
-        It runs in this process, which has loaded SymPy; in a process of its own, it would take
-        seconds.
-        """
-        said, status = io.StringIO(), 0
-        with contextlib.ExitStack() as stack:
-            stack.enter_context(contextlib.chdir(self.place))
-            stack.enter_context(contextlib.redirect_stdout(said))
-            stack.enter_context(contextlib.redirect_stderr(said))
-            stack.enter_context(pytest.MonkeyPatch.context()).setattr(
-                sys, "stdin", io.StringIO(stdin)
-            )
-            try:
-                main([*map(str, words)])
-            except SystemExit as ended:
-                status = ended.code
-                print(status or "", file=said)
-        assert bool(status) == fails, said.getvalue()
-        return said.getvalue()
+    def run(self, *words, **more):
+        with contextlib.chdir(self.place):
+            return run_command(*words, **more)
 
     def grade(self, *words, **more):
         return self.run(
@@ -109,23 +115,17 @@ class Course:
 
     def points(self, assignment=None):
         """Return the points in grades.csv of each student, or of each student in one assignment."""
-        rows = csv.DictReader((self.marks / "grades.csv").read_text("utf8").splitlines())
         return {
             row["student"]: float(row["points"])
-            for row in rows
+            for row in self.table("grades.csv")
             if assignment in (None, row["assignment"])
         }
 
     def table(self, name):
-        return list(csv.DictReader((self.marks / name).read_text("utf8").splitlines()))
+        return read_table(self.marks / name)
 
     def write_table(self, name, rows):
-        path = self.place / name
-        with open(path, "w", encoding="utf8", newline="") as file:
-            writer = csv.DictWriter(file, rows[0])
-            writer.writeheader()
-            writer.writerows(rows)
-        return path
+        return write_table(self.place / name, rows)
 
     def canvas_book(self, *columns, name="book.csv"):
         """Write an empty Canvas gradebook of everybody who has handed in."""
@@ -139,6 +139,6 @@ class Course:
 
     def column(self, book, column):
         """Return the contents of a column in a filled gradebook for each student."""
-        rows = csv.DictReader(Path(book).read_text("utf8").splitlines())
-        key = "SIS Login ID" if "SIS Login ID" in rows.fieldnames else rows.fieldnames[0]
+        rows = read_table(book)
+        key = "SIS Login ID" if "SIS Login ID" in rows[0] else next(iter(rows[0]))
         return {row[key]: row[column] for row in rows}

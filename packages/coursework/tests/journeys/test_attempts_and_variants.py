@@ -4,7 +4,8 @@ import hashlib
 
 import nbformat
 import pytest
-from course_by_commands import Course, notebook
+from course_by_commands import Course
+from trial_course import notebook
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 TERM = """
@@ -45,12 +46,12 @@ def write_beam(course, weights):
         "from coursework import check, student, variant\nstudent('')",
         f"### BEGIN VARIANTS\nbeam = draw('hw1/load', count={len(weights)}, weight={weights})\n"
         "### END VARIANTS",
-        "#!A beam carries {{weight}} N twice. Give the whole load.",
+        ("markdown", "A beam carries {{weight}} N twice. Give the whole load."),
         "### BEGIN SOLUTION\nload = 2*beam.weight\n### END SOLUTION",
         "check('hw1/load', load)\n### BEGIN HIDDEN TESTS\nquestion('hw1/load', kind='expression', "
         "worth=4)\n### END HIDDEN TESTS",
     ]
-    nbformat.write(notebook(*cells), course.solutions / "hw1.ipynb")
+    nbformat.write(notebook(cells), course.solutions / "hw1.ipynb")
 
 
 def number_of(student, count):
@@ -67,7 +68,7 @@ def weights_in_order(weights):
 
 
 def hands_in_beam(course, student, weight, shows):
-    made = notebook("from coursework import check, student, variant\nstudent('')", "beam", "")
+    made = notebook(["from coursework import check, student, variant\nstudent('')", "beam", ""])
     made.cells[2].source = f"load = {2 * weight}\ncheck('hw1/load', load)"
     if shows:
         text = f"A beam carries {weight} N twice. Give the whole load."

@@ -1,14 +1,11 @@
 """An instructor goes from nothing to a second term by the manual's commands, with usual errors."""
 
-import contextlib
-import csv
-import io
 import json
 from unittest.mock import Mock
 
 import pytest
+from course_by_commands import read_table, run_command, write_table
 
-from coursework.__main__ import main
 from coursework.grading import sitting
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
@@ -30,18 +27,9 @@ BOOK = """Student,ID,SIS User ID,SIS Login ID,Section,First steps (9)
 def run(tmp_path, monkeypatch):
     """Return a function that runs a command in the course's folder, with nobody there to agree."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("sys.stdin", io.StringIO())
 
     def run(command, fails=False):
-        said, ended = io.StringIO(), None
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            try:
-                main(command.split())
-            except SystemExit as end:
-                ended = end.code
-                print(ended or "", file=said)
-        assert bool(ended) == fails, said.getvalue()
-        return said.getvalue()
+        return run_command(*command.split(), fails=fails)
 
     run("new my-course")
     monkeypatch.chdir(tmp_path / "my-course")
@@ -133,14 +121,10 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
 
 def ticked(table, **ticks):
     """Fill in the column `tick` like a spreadsheet: for each question, by a student's name."""
-    with open(table, encoding="utf8", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = read_table(table)
     for row in rows:
         row["tick"] = ticks[row["question"].partition("/")[2]](row["student"])
-    with open(table, "w", encoding="utf8", newline="") as file:
-        writer = csv.DictWriter(file, rows[0])
-        writer.writeheader()
-        writer.writerows(rows)
+    write_table(table, rows)
 
 
 def test_a_sitting_of_a_class(run, tmp_path, monkeypatch):

@@ -15,7 +15,8 @@ from types import SimpleNamespace
 
 import nbformat
 import pytest
-from course_by_commands import notebook
+from course_by_commands import read_table, write_table
+from trial_course import notebook
 from without_a_sandbox import run_without_a_sandbox
 
 from coursework.__main__ import main
@@ -44,11 +45,11 @@ class Crash(BaseException):
 
 
 def source(name, asked):
-    return notebook(
+    return notebook([
         "import sympy as sm\nfrom coursework import check, student, variant\nstudent('')",
         f"### BEGIN VARIANTS\nbeam = draw('{name}/load', count={len(asked.weights)}, "
         f"weight={asked.weights})\n### END VARIANTS",
-        "#!A beam carries {{weight}} N twice. Give the whole load.",
+        ("markdown", "A beam carries {{weight}} N twice. Give the whole load."),
         f"### BEGIN SOLUTION\nload = {asked.times}*beam.weight\n### END SOLUTION",
         f"check('{name}/load', load)\n### BEGIN HIDDEN TESTS\nquestion('{name}/load', "
         f"kind='expression', worth={asked.worth}, tolerance=0.01)\n### END HIDDEN TESTS",
@@ -59,7 +60,7 @@ def source(name, asked):
         "### BEGIN SOLUTION\nwhy = 'By the arm.'\n### END SOLUTION",
         f"check('{name}/why', why)\n### BEGIN HIDDEN TESTS\n"
         f"question('{name}/why', kind='free text', worth=2)\n### END HIDDEN TESTS",
-    )
+    ])  # fmt: skip
 
 
 @functools.cache
@@ -147,7 +148,7 @@ class Story:
         attempt.path.parent.mkdir(exist_ok=True)
         self.write_notebook(worker, name, attempt)
         if attempt.has_copy:
-            copy = notebook(*(f"check('{name}/{one}', {one})" for one in ("load", "why")))
+            copy = notebook(f"check('{name}/{one}', {one})" for one in ("load", "why"))
             nbformat.write(copy, attempt.path.with_name(f"{name}-Copy1.ipynb"))
 
     @staticmethod
@@ -157,9 +158,9 @@ class Story:
             answer = getattr(attempt, question)
             shown = "..." if answer is None else repr(answer) if question == "why" else answer
             cells.append(f"check('{name}/{question}', {shown})")
-        made = notebook(*attempt.comments, *cells)
+        made = notebook([*attempt.comments, *cells])
         if attempt.is_blank:
-            made = notebook(*(f"check('{name}/{one}', {one})" for one in ("load", "why")))
+            made = notebook(f"check('{name}/{one}', {one})" for one in ("load", "why"))
         # Show the text of the archive that the student has.
         text = f"A beam carries {own_weight(worker, name)} N twice. Give the whole load."
         made.cells[-1].outputs = [nbformat.v4.new_output("display_data", {"text/markdown": text})]
@@ -420,10 +421,9 @@ class Story:
         """A tutor fills in the table of what waits, either the current one or an older one."""
         path = self.place / "marks" / "undecided.csv"
         if path.exists() and (not self.tables or self.dice.random() < 0.7):
-            rows = list(csv.DictReader(path.read_text().splitlines()))
             rows = [
                 row | {"credit": str(self.dice.choice([0, 0.5, 1]))}
-                for row in rows
+                for row in read_table(path)
                 if row["question"].endswith("/why")
             ]
             answers = [
@@ -434,11 +434,7 @@ class Story:
         if not self.tables:
             return
         who, rows, answers = self.dice.choice(self.tables)
-        file = self.place / "decided.csv"
-        with open(file, "w", newline="") as table:
-            writer = csv.DictWriter(table, rows[0])
-            writer.writeheader()
-            writer.writerows(rows)
+        file = write_table(self.place / "decided.csv", rows)
         for row, answer in zip(rows, answers, strict=True):
             key = row["student"], row["question"][:3], "why"
             there = self.decided.get(key)
