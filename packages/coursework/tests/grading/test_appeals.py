@@ -10,14 +10,14 @@ from urllib.parse import quote_plus
 
 import nbformat
 import pytest
-from grading_class import LIMITS, grade_quietly, notebook, put, write_term
+from grading_class import grade_quietly, notebook, put, write_term
 from test_review import Served
 
 from coursework.__main__ import main
 from coursework.authoring.author import AuthorError
 from coursework.authoring.source import read_source
 from coursework.grading.export import gradebooks
-from coursework.grading.grade import bring_in_decisions, grade, regrade
+from coursework.grading.grade import bring_in_decisions, regrade
 from coursework.grading.judging import secret
 from coursework.grading.judging.journal import (
     REJECTED,
@@ -27,7 +27,6 @@ from coursework.grading.judging.journal import (
     Part,
 )
 from coursework.grading.review import Class
-from coursework.grading.running import Running
 from coursework.grading.store import Store
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
@@ -265,13 +264,8 @@ def test_appeals_go_with_a_student_whom_a_roster_calls_something_else(begun, out
     journal.append([one], collisions=True)
     journal.append([journal.decision(record, SUM, 0.5, who="Ben", after=one.id)], collisions=True)
     (tmp_path / "roster.csv").write_text("student,name\nada,ada\nbenjamin,ben\ncem,cem\n")
-    options = {
-        "solutions": begun / "solutions",
-        "running": Running(limits=LIMITS),
-        "show": io.StringIO(),
-    }
     write_term(out, tmp_path / "roster.csv", {"essays": ["essays"]})
-    grade(begun / "in", out.folder, **options)
+    grade_quietly(begun / "in", out.folder, begun / "solutions")
     found = out.read("benjamin", "essays").marks[SUM]
     assert (found.points, [one["state"] for one in found.appeals]) == (1, ["accepted"])
     again = Journal(out.folder)
@@ -285,7 +279,6 @@ def test_appeals_go_with_a_student_whom_a_roster_calls_something_else(begun, out
 def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_path, capsys):
     Journal(out.folder).add(out.read("ben", "essays"), SUM, 1, who="Ann")
     Journal(out.folder).add(out.read("cem", "essays"), SUM, 0.5, who="Ann")
-    options = {"solutions": begun / "solutions", "running": Running(limits=LIMITS)}
     regrade(out.folder, solutions=begun / "solutions", show=io.StringIO())
     # Rewording the text does not make another question.
     reworded = write_essays(tmp_path / "reworded", text="Why is that so?")
@@ -294,7 +287,7 @@ def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_p
     assert "changed since" not in said.getvalue()
     # A resubmitted answer is judged again, and the decision on the earlier one is not forgotten.
     put(tmp_path / "in", "ben", answered("Since.", 7), "essays.ipynb")
-    grade(tmp_path / "in", out.folder, show=said, **options)
+    grade_quietly(tmp_path / "in", out.folder, begun / "solutions", show=said)
     assert out.read("ben", "essays").points == 0
     assert (
         "1 decision is about an answer or a question that has changed since (ben)"

@@ -532,8 +532,7 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     few, same, shown = tmp_path / "few", handed_in(sum="sine = sm.cos(alpha)"), io.StringIO()
     for name in ("b", "c"):
         put(few, name, same)
-    options = {"solutions": course / "solutions", "running": Running(limits=LIMITS)}
-    grade(few, copied, show=io.StringIO(), **options)
+    grade_quietly(few, copied, course / "solutions")
     for name, credit in (("b", 0.5), ("c", 1)):
         Journal(copied).add(
             Store(copied).read(name, "turns"), "turns/sum", credit, who="Ann", why="appeal"
@@ -541,7 +540,7 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     roster = tmp_path / "roster.csv"
     roster.write_text("student,name\nanother,c\nsomebody,b\n")
     write_term(copied, roster)
-    grade(few, copied, show=shown, **options)
+    grade_quietly(few, copied, course / "solutions", show=shown)
     points = {row["student"]: row["points"] for row in rows_of(copied / "grades.csv")}
     assert "b" not in points and (points["somebody"], points["another"]) == ("5.5", "6")
     assert (copied / "put-aside" / "b" / "turns.json").exists()
@@ -554,7 +553,7 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     assert handed_on["somebody"].when == handed_on["b"].when
     # Somebody who left the roster has not become the other student who handed in the same.
     roster.write_text("student,name\nthird,c\n")
-    grade(few, copied, show=shown, **options)
+    grade_quietly(few, copied, course / "solutions", show=shown)
     assert (
         "'another' is now 'third'" in shown.getvalue()
         and "'somebody' is now" not in shown.getvalue()
@@ -563,7 +562,7 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     # If folders are renamed, too, nobody knows which is which.
     for name in ("b", "c"):
         (few / name).rename(few / f"{name}{name}")
-    grade(few, copied, show=shown, **options)
+    grade_quietly(few, copied, course / "solutions", show=shown)
     assert (
         "'somebody' is now 'bb' or 'cc'" in shown.getvalue()
         and "no longer count" in shown.getvalue()
@@ -598,32 +597,6 @@ def test_without_workers_nothing_is_graded_and_it_is_said(course, tmp_path, work
             solutions=course / "solutions",
             running=Running(workers=workers),
         )
-
-
-def test_whose_is_what_is_said_before_anything_is_run(course, tmp_path, monkeypatch):
-    monkeypatch.setattr(
-        "coursework.grading.running.side_by_side", lambda *arguments: pytest.fail("it was run")
-    )
-    (tmp_path / "roster.csv").write_text("student,name\nright,A\nmistaken,B\nabsent,C\n")
-    write_term(tmp_path / "out", tmp_path / "roster.csv")
-    shown = io.StringIO()
-    grade(
-        course / "submissions",
-        tmp_path / "out",
-        solutions=course / "solutions",
-        dry_run=True,
-        show=shown,
-    )
-    said = shown.getvalue()
-    assert "right <- right/turns.ipynb  (turns; the name of the folder)" in said
-    assert (
-        "? <- endless/turns.ipynb: Nobody in the roster matches." in said
-        and "1 handed in nothing: absent" in said
-    )
-    assert {row["student"] for row in rows_of(tmp_path / "out" / "whose.csv")} == {
-        "right",
-        "mistaken",
-    }
 
 
 def test_feedback_leads_to_the_chapter_and_to_a_solution_that_is_released(course, copied, tmp_path):

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import nbformat
 import pytest
 import sympy as sm
-from grading_class import LIMITS, grade_quietly, notebook, put, write_term
+from grading_class import grade_quietly, notebook, put, write_term
 
 from coursework.__main__ import main
 from coursework.authoring.author import AuthorError
@@ -25,7 +25,7 @@ from coursework.checking.variants import (
 from coursework.grading import review
 from coursework.grading.assignments import NothingToGrade
 from coursework.grading.execution import isolation
-from coursework.grading.grade import grade, regrade
+from coursework.grading.grade import regrade
 from coursework.grading.judging import judge as judging
 from coursework.grading.judging import marking, secret
 from coursework.grading.judging.cases import Contracts, case_by_rule, variants_of
@@ -34,7 +34,6 @@ from coursework.grading.judging.journal import CUT, Journal
 from coursework.grading.judging.marking import questions_of
 from coursework.grading.record import Answer, Identity, Mark, Record, Remembered
 from coursework.grading.review import Class
-from coursework.grading.running import Running
 from coursework.grading.store import Store
 from coursework.grading.submissions import pictures
 
@@ -253,17 +252,17 @@ def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun,
             answered(2 * begun.own[student], says=student),
             "beams.ipynb",
         )
-    options = {"solutions": begun.place / "solutions", "running": Running(limits=LIMITS)}
+    solutions = begun.place / "solutions"
     said = io.StringIO()
     with pytest.raises(NothingToGrade, match="Of 6 notebooks .* 6 carry .*roster in term.toml"):
-        grade(tmp_path / "in", tmp_path / "out", show=said, **options)
+        grade_quietly(tmp_path / "in", tmp_path / "out", solutions, show=said)
     assert (
         "says that it belongs to 'student-00', but we grade it for 'folder of student-00'"
         in said.getvalue()
     )
     assert "student-00" in (tmp_path / "out" / "whose.csv").read_text()
     said = io.StringIO()
-    grade(tmp_path / "in", tmp_path / "out", show=said, as_listed=True, **options)
+    grade_quietly(tmp_path / "in", tmp_path / "out", solutions, show=said, as_listed=True)
     lost = sum(
         mark.note == "other numbers" for mark in marks_of(Store(tmp_path / "out"), NAME).values()
     )
@@ -273,7 +272,7 @@ def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun,
         "student,handed in as\n" + "".join(f"{one},folder of {one}\n" for one in STUDENTS[:6])
     )
     write_term(tmp_path / "out", roster, {"beams": ["beams"]})
-    grade(tmp_path / "in", tmp_path / "out", show=io.StringIO(), **options)
+    grade_quietly(tmp_path / "in", tmp_path / "out", solutions)
     assert {mark.points for mark in marks_of(Store(tmp_path / "out"), NAME).values()} == {2}
 
 
@@ -521,10 +520,8 @@ def mended(folder, exchanged, weights=WEIGHTS, **more):
 
 def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
     """A corrected solution judges stored answers; a corrected call runs for those asked it."""
-    said = io.StringIO()
-    options = {"running": Running(limits=LIMITS), "show": said}
     solutions = mended(tmp_path / "mended", ("2*beam.weight", "7*beam.weight"))
-    assert grade(begun.place / "in", out.folder, solutions=solutions, **options)["graded"] == 0
+    assert grade_quietly(begun.place / "in", out.folder, solutions)["graded"] == 0
     assert {mark.points for mark in marks_of(out, NAME).values()} == {0}
     calls = mended(tmp_path / "calls", ("2*x", "x + x"), calls="[[7.5], [1.5]]")
     found = regrade(out.folder, solutions=calls, dry_run=True)
@@ -533,7 +530,7 @@ def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
         "wrong",
     } and "To judge just these, run" in "\n".join(found.lines())
     few = shutil.copytree(begun.place / "in" / STUDENTS[0], tmp_path / "few" / STUDENTS[0]).parent
-    assert grade(few, out.folder, solutions=calls, **options)["graded"] == 1
+    assert grade_quietly(few, out.folder, calls)["graded"] == 1
     assert out.read(STUDENTS[0], "beams").marks["beams/twice"].points == 3
 
 

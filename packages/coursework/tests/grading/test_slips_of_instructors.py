@@ -1,19 +1,16 @@
 """Slips in a hurry, such as a wrong folder, a full disk or half a download, are explained."""
 
 import errno
-import io
 import os
 
 import pytest
-from grading_class import LIMITS, handed_in, put, write_sources
+from grading_class import grade_quietly, handed_in, put, write_sources
 from test_review import Served, first_of
 
 from coursework.__main__ import main
 from coursework.grading.assignments import NothingToGrade
-from coursework.grading.grade import grade
 from coursework.grading.judging import journal as judging
 from coursework.grading.judging.journal import Journal
-from coursework.grading.running import Running
 from coursework.grading.store import Store
 from coursework.grading.submissions.roster import Roster
 
@@ -29,14 +26,8 @@ def course(tmp_path):
     return tmp_path
 
 
-def graded(course, submissions, out, **more):
-    options = {
-        "solutions": course / "course" / "solutions",
-        "running": Running(limits=LIMITS),
-        "show": io.StringIO(),
-        **more,
-    }
-    return grade(submissions, out, **options)
+def graded(course, submissions, out):
+    return grade_quietly(submissions, out, course / "course" / "solutions")
 
 
 def test_results_are_nobody_s_work(course):
