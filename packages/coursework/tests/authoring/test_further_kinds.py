@@ -1,7 +1,6 @@
 """Further kinds: numbers with units, orders, partly right lists, texts for a person, and plots."""
 
 import random
-from types import SimpleNamespace
 
 import nbformat
 import pytest
@@ -22,8 +21,7 @@ from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.units import BASE, PREFIXES, WITH_PREFIX, UnknownUnit, unit
 from coursework.grading.judging import marking
 from coursework.grading.judging.contract import Asked
-from coursework.grading.record import Answer, Mark, Record
-from coursework.grading.review import Class
+from coursework.grading.record import Answer
 
 
 def make(kind, answer, **about):
@@ -236,18 +234,6 @@ def test_a_text_goes_to_a_person_and_nothing_of_it_is_sealed(tmp_path):
         make("expression", 3, rubric=RUBRIC)
     with pytest.raises(NotPlain, match="long"):
         to_plain("x" * 5000)
-
-
-def test_the_rubric_stands_on_the_page_where_a_person_judges(tmp_path):
-    graded = Class(tmp_path)
-    graded.questions = {
-        "trial/one": marking.contract_of(make("free text", ESSAY, rubric=RUBRIC), b"any secret")
-    }
-    lines = graded.lines(
-        SimpleNamespace(question="trial/one"),
-        Record("ann", "trial", marks={"trial/one": Mark("undecided")}),
-    )
-    assert [line for line, *_ in lines] == RUBRIC
 
 
 # --- a plot as a figure ---------------------------------------------------------------------------

@@ -57,10 +57,6 @@ def test_an_example_is_a_question_that_passes(tmp_path, about, cells, replies):
         assert repr(_judge(question, eval(wrong, names))) == said
 
 
-def mean(numbers):
-    return sum(numbers) / len(numbers)
-
-
 def test_the_manual_has_examples_of_most_kinds_and_names_all():
     assert len(examples()) >= 5 and sum(len(replies) for *_, replies in examples()) >= 4
     from coursework.checking.kinds import KINDS

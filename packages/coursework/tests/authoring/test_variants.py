@@ -75,8 +75,12 @@ CELLS = [
 
 @pytest.fixture(autouse=True)
 def nobody_is_kept(monkeypatch, tmp_path):
-    """Do not store who works in a test, so that the next test does not find it."""
+    """Keep neither who works in a test nor what it read, so that the next test finds none."""
     monkeypatch.setattr(identity, "KEPT", tmp_path / "no" / "such" / "me.txt")
+    questions.notebook_questions.cache_clear()
+    yield
+    coursework.student("")
+    questions.notebook_questions.cache_clear()
 
 
 @pytest.fixture(scope="module")
@@ -92,22 +96,11 @@ def beside(course, monkeypatch, tmp_path):
     """Work in a folder with the sealed questions of the course beside it."""
     (tmp_path / "sealed").symlink_to(course.sealed)
     monkeypatch.chdir(tmp_path)
-    questions.notebook_questions.cache_clear()
-    yield
-    coursework.student("")
-    questions.notebook_questions.cache_clear()
 
 
-def student_with(number):
-    return next(
-        f"{k}@uni.example"
-        for k in range(999)
-        if variants.variant_of(f"{k}@uni.example", "levers/see-saw", 6) == number
-    )
-
-
-def variant(student):
-    return variants.variant_of(student, NAME, 6)
+def student_with(number, count=6):
+    students = (f"{k}@uni.example" for k in range(999))
+    return next(one for one in students if variants.variant_of(one, NAME, count) == number)
 
 
 @pytest.mark.sampled(2)
@@ -122,10 +115,6 @@ def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number
     assert coursework.check("levers/see-saw", lever.force * lever.arm).outcome == "correct"
     assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
     assert coursework.check("levers/plain", 7).outcome == "correct"  # a question without variants
-    for other in range(6):
-        given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public.given
-        reply = coursework.check(NAME, moment := given["force"] * given["arm"])
-        assert (reply.outcome == "correct") == (moment == lever.force * lever.arm)
 
 
 @pytest.mark.parametrize("roster", [False, True])
@@ -310,12 +299,7 @@ def test_answers_to_another_students_numbers_earn_nothing_and_are_flagged(course
     found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
     assert len(found[NAME]) == 6 and len(found["levers/plain"]) == 1
     for number in (0, 4):
-        student = (
-            student_with(number)
-            if number
-            else next(f"{k}" for k in range(99) if not variant(f"{k}"))
-        )
-        own, _ = marking.of_student(found, student)
+        own, _ = marking.of_student(found, student_with(number))
         for other in range(6):
             given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public.given
             plain = to_plain(given["force"] * given["arm"])
@@ -580,25 +564,16 @@ def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch)
         name="levers",
     )
     monkeypatch.chdir(tmp_path)
-    try:
-        for moved in (0, 1e-4):
-            monkeypatch.setenv("MOVED_BY", str(moved))
-            release(made, run=False)
-            for number in range(6):
-                questions.notebook_questions.cache_clear()
-                coursework.student(student_with(number) if number else "")
-                lever = coursework.variant("levers/see-saw")
-                assert (
-                    coursework.check("levers/see-saw", lever.force * lever.arm + moved).outcome
-                    == "correct"
-                )
-                assert (
-                    "not added"
-                    in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
-                )
-    finally:
-        coursework.student("")
+    for moved in (0, 1e-4):
+        monkeypatch.setenv("MOVED_BY", str(moved))
+        release(made, run=False)
         questions.notebook_questions.cache_clear()
+        for number in range(6):
+            coursework.student(student_with(number) if number else "")
+            lever = coursework.variant(NAME)
+            right = coursework.check(NAME, lever.force * lever.arm + moved)
+            assert right.outcome == "correct"
+            assert "not added" in coursework.check(NAME, lever.force + lever.arm).messages[0]
 
 
 @pytest.mark.parametrize(
@@ -680,30 +655,20 @@ def test_a_picture_differs_from_variant_to_variant(tmp_path, monkeypatch):
     write_source(made.sources, *PICTURED, name="levers")
     release(made, run=False)
     monkeypatch.chdir(made.root)
-    questions.notebook_questions.cache_clear()
     seen = set()
-    try:
-        for number in range(3):
-            student = next(
-                f"s{k}"
-                for k in range(99)
-                if variants.variant_of(f"s{k}", "levers/see-saw", 3) == number
-            )
-            coursework.student(student)
-            lever = coursework.variant("levers/see-saw")
-            data = re.search(
-                r'<p><img alt="A beam &amp; (\d) arrows" width="9" src="data:[^,]+,(.*?)"></p>',
-                lever._repr_markdown_(),
-            )
-            assert f"{data[1]} arrows</svg>" in base64.b64decode(data[2]).decode() and data[
-                1
-            ] == str(lever.force)
-            assert repr(lever) == f"A beam & {lever.force} arrows\n\nHow many arrows?"
-            assert coursework.check("levers/see-saw", lever.force).outcome == "correct"
-            seen.add(lever.force)
-    finally:
-        coursework.student("")
-        questions.notebook_questions.cache_clear()
+    for number in range(3):
+        coursework.student(student_with(number, 3))
+        lever = coursework.variant(NAME)
+        shown, data = re.fullmatch(
+            r'<p><img alt="A beam &amp; (\d) arrows" width="9" src="data:[^,]+,(.*?)"></p>'
+            r"\s+How many arrows\?",
+            lever._repr_markdown_(),
+        ).groups()
+        assert shown == str(lever.force)
+        assert f"{lever.force} arrows</svg>" in base64.b64decode(data).decode()
+        assert repr(lever) == f"A beam & {lever.force} arrows\n\nHow many arrows?"
+        assert coursework.check(NAME, lever.force).outcome == "correct"
+        seen.add(lever.force)
     assert seen == {2, 5, 6}
 
 

@@ -1,7 +1,5 @@
 """The sampled values of symbols, the display of replies, and a page's requests for sealed files."""
 
-import itertools
-import math
 import sys
 from types import ModuleType, SimpleNamespace
 
@@ -65,20 +63,6 @@ def test_all_spellings_of_a_symbol_have_its_value_unless_they_are_another_symbol
     [point, *_] = points.points(Question("expression", symbols={"phi'": (1, 2), "varphi'": (3, 4)}))
     assert point["phidot"] == point["phi'"] == point["dphi"]
     assert 3 < point["varphi'"] < 4 and point["varphidot"] in (point["varphi'"], point["phi'"])
-
-
-def test_no_two_signs_of_sines_and_cosines_always_agree():
-    symbols = {name: (-3.0, 3.0) for name in "abc"}
-    for salt in "abcdefgh":
-        rows = points.points(Question("expression", salt=salt, symbols=symbols))
-        assert len(rows) == points.POINTS
-        signs = set()
-        for name, function in itertools.product(symbols, (math.sin, math.cos)):
-            changes = [function(row[name]) * function(rows[0][name]) > 0 for row in rows]
-            assert not all(changes) and tuple(changes) not in signs
-            signs.add(tuple(changes))
-        for name in symbols:
-            assert len({math.floor(row[name] / (math.pi / 2)) for row in rows}) == 4
 
 
 def test_without_symbols_there_is_one_point_and_none_is_shared():

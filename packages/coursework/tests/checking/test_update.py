@@ -248,23 +248,15 @@ def test_what_is_installed_is_not_installed_again(work, tmp_path, monkeypatch):
         assert line == f"Now run this:\n\n    {command} -m pip install {both}\n"
 
 
-def test_the_extra_files_of_a_mac_are_left_out(work, tmp_path):
-    files = {"one.ipynb": notebook("one"), "._one.ipynb": b"\0\5\26\7", "README.txt": b"one"}
-    files["manifest.json"] = manifest(
-        {"one.ipynb": files["one.ipynb"], "README.txt": b"one"}
-    ).encode()
-    update(zipped(tmp_path / "exercises.zip", files), work)
-    assert "one.ipynb" in contents(work) and "._one.ipynb" not in contents(work)
-
-
 def test_a_newer_download_beside_an_older_one_is_named(work, tmp_path):
     """A browser numbers the second one, and its reader types the name in the README."""
     old = zipped(tmp_path / "exercises.zip", {"one.ipynb": notebook("one")})
-    new = zipped(tmp_path / "exercises (1).zip", {"one.ipynb": notebook("two"), ".DS_Store": b"0"})
+    of_a_mac = {".DS_Store": b"0", "._one.ipynb": b"\0\5\26\7"}
+    new = zipped(tmp_path / "exercises (1).zip", {"one.ipynb": notebook("two"), **of_a_mac})
     os.utime(old, (1, 1))
     before = contents(work)
     with pytest.raises(ArchiveRefused, match=r'newer archive beside .*"exercises \(1\)\.zip"'):
         update(old, work)
     assert contents(work) == before
     update(new, work)
-    assert contents(work)["one.ipynb"] == notebook("two") and ".DS_Store" not in contents(work)
+    assert contents(work)["one.ipynb"] == notebook("two") and not of_a_mac.keys() & contents(work)

@@ -12,7 +12,7 @@ import zipfile
 
 import nbformat
 import pytest
-from grading_class import handed_in, notebook, put
+from grading_class import handed_in, notebook, put, write_sources
 
 from coursework.grading.assignments import Course, NothingToGrade
 from coursework.grading.grade import grade
@@ -707,8 +707,6 @@ def test_of_a_large_archive_little_is_held(box):
 
 @pytest.fixture
 def course(tmp_path):
-    from grading_class import write_sources
-
     return Course(write_sources(tmp_path / "solutions"))
 
 
@@ -787,8 +785,6 @@ def test_nbgraders_names_tell_the_assignment_where_the_checks_are_gone(folder, c
 
 
 def test_the_names_of_questions_are_found_without_running_a_solution(tmp_path):
-    from grading_class import write_sources
-
     solutions = write_sources(
         tmp_path / "solutions", [("import sympy as sm", "import sympy as sm\nraise SystemExit")]
     )
