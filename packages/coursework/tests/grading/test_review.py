@@ -1,5 +1,6 @@
 """The page to mark in: safe against other pages and its own content, and usable by keys alone."""
 
+import asyncio
 import base64
 import functools
 import http.client
@@ -25,6 +26,7 @@ from grading_class import (
     put,
     write_sources,
 )
+from tornado import httpserver, netutil
 from trial_course import PROJECT
 
 from coursework.__main__ import main
@@ -74,40 +76,31 @@ class Served:
     """The page, served from a thread, with requests to it."""
 
     def __init__(self, folder, **options):
-        from tornado import httpserver, ioloop, netutil
-
         self.ready = threading.Event()
+        serving = functools.partial(self.serve, folder, **options)
+        self.thread = threading.Thread(target=lambda: asyncio.run(serving()))
 
-        def serve():
-            import asyncio
-
-            asyncio.set_event_loop(asyncio.new_event_loop())
-            sockets = netutil.bind_sockets(0, "127.0.0.1")
-            self.port = sockets[0].getsockname()[1]
-            made = application(Class(folder), options.pop("grader", "Ann"), self.port, **options)
-            self.secret = made.settings["secret"]
-            self.server = httpserver.HTTPServer(made)
-            self.server.add_sockets(sockets)
-            self.loop = ioloop.IOLoop.current()
-            self.loop.add_callback(self.ready.set)
-            self.loop.start()
-            self.loop.close()
-
-        self.thread = threading.Thread(target=serve)
-        self.thread.start()
-        assert self.ready.wait(60)
+    async def serve(self, folder, grader="Ann", **options):
+        sockets = netutil.bind_sockets(0, "127.0.0.1")
+        self.port = sockets[0].getsockname()[1]
+        made = application(Class(folder), grader, self.port, **options)
+        self.secret = made.settings["secret"]
+        server = httpserver.HTTPServer(made)
+        server.add_sockets(sockets)
+        self.loop, self.over = asyncio.get_running_loop(), asyncio.Event()
+        self.ready.set()
+        await self.over.wait()
+        server.stop()
+        await server.close_all_connections()
 
     def __enter__(self):
+        self.thread.start()
+        assert self.ready.wait(60)
         return self
 
     def __exit__(self, *error):
-        self.loop.add_callback(self.stop)
+        self.loop.call_soon_threadsafe(self.over.set)
         self.thread.join()
-
-    async def stop(self):
-        self.server.stop()
-        await self.server.close_all_connections()
-        self.loop.stop()
 
     @property
     def address(self):
@@ -279,16 +272,9 @@ def test_names_are_hidden_on_request(out):
         assert "student " in shown and not re.search("copies|was-copied|pokes", shown)
 
 
-def test_the_commands(out, capsys, tmp_path, graded):
+def test_a_folder_without_what_is_needed_is_named(out, tmp_path):
     with pytest.raises(SystemExit, match="no records"):
         main(["review", str(tmp_path / "empty")])
-    other = tmp_path / "other"
-    shutil.copytree(out, other)
-    found = Store(out).read("copies", "turns")
-    Journal(out).add(found, "turns/sum", 1, who="Ann")
-    Journal(other).add(found, "turns/sum", 0, who="Bea")
-    main(["merge", str(out), str(other / "journal.jsonl")])
-    assert ": 1 decision." in capsys.readouterr().out.splitlines()[0]
     with pytest.raises(SystemExit, match="does not exist.*made no decisions"):
         main(["merge", str(out), str(tmp_path / "none")])
 
