@@ -133,6 +133,39 @@ def test_two_tabs_share_their_answers(context, site):
         second.page.goto("chrome://crash")
     first.wait(ANSWER, "first = 10")
     assert first.errors == second.errors == []
+    # Tabs are notified late: the other one, simulated here, changes what it does not know.
+    other_tab = context.new_page()
+    other_tab.goto(f"{site}search.html")
+    change = (
+        "([key, text]) => text === null ? localStorage.removeItem(key) : "
+        "localStorage.setItem(key, text)"
+    )
+
+    def written(code):
+        first.write(ANSWER, code)
+        kept = first.page.evaluate(KEPT).items()
+        [(key, entry)] = [item for item in kept if re.search(f" answer .* {CRANK}$", item[0])]
+        return key, json.loads(entry)
+
+    key, entry = written("mine = 1")
+    other_tab.evaluate(change, [f"{key}-of-none", json.dumps(entry)])  # news of something else
+    first.wait(ANSWER, "mine = 1")
+    other_tab.evaluate(change, [f"{key}-of-none", None])
+    other_tab.evaluate(change, [key, None])  # it took the book's code for that of the page
+    first.wait(ANSWER, BLANK)
+    assert "mine = 1" in first.shown()
+    key, entry = written("mine = 2")
+    other_tab.evaluate(change, [key, json.dumps(entry | {"code": "theirs = 1"})])
+    first.wait(ANSWER, "theirs = 1")
+    assert "mine = 2" in first.shown()
+    key, entry = written("mine = 3")
+    late = json.dumps(entry | {"code": "theirs = 2"})
+    first.page.evaluate(
+        "([key, newValue]) => dispatchEvent(new StorageEvent('storage', { key, newValue }))",
+        [key, late],
+    )
+    assert first.text(ANSWER) == "mine = 3" and "theirs = 2" in first.shown()
+    assert first.errors == []
 
 
 def test_text_of_a_tab_that_slept_is_set_aside(context, site):
@@ -152,6 +185,16 @@ def test_text_of_a_tab_that_slept_is_set_aside(context, site):
     tab.page.get_by_role("button", name="Bring it back").click()
     tab.wait(ANSWER, "theirs = 2")
     assert "mine = 3" in tab.shown()
+    # Where it cannot be set aside, it is not replaced.
+    theirs = f"theirs = {'3' * 200}"
+    tab.page.evaluate(
+        "([key, text]) => localStorage.setItem(key, text)",
+        [key, json.dumps(json.loads(entry) | {"code": theirs})],
+    )
+    fill(tab)
+    tab.write(ANSWER, "mine = 2")
+    assert "no room left" in tab.words()
+    Tab(context, site).wait(ANSWER, theirs)
 
 
 def test_keys_carry_the_path_of_the_site(context, site):
@@ -551,41 +594,6 @@ def test_copies_of_one_minute_stand_beside_each_other(context, site):
         assert any(mine in content for _, content in copies), [path for path, _ in copies]
 
 
-def test_what_two_tabs_write_at_one_moment_is_kept_of_both(context, site):
-    """Tabs are notified late: the other one, simulated here, changes what it does not know."""
-    tab, other_tab = Tab(context, site).edit(), context.new_page()
-    other_tab.goto(f"{site}search.html")
-    change = (
-        "([key, text]) => text === null ? localStorage.removeItem(key) : "
-        "localStorage.setItem(key, text)"
-    )
-
-    def written(code):
-        tab.write(ANSWER, code)
-        [(key, entry)] = [item for item in tab.page.evaluate(KEPT).items() if " answer " in item[0]]
-        return key, json.loads(entry)
-
-    key, entry = written("mine = 1")
-    other_tab.evaluate(change, [f"{key}-of-none", json.dumps(entry)])  # news of something else
-    tab.wait(ANSWER, "mine = 1")
-    other_tab.evaluate(change, [f"{key}-of-none", None])
-    other_tab.evaluate(change, [key, None])  # it took the book's code for that of the page
-    tab.wait(ANSWER, BLANK)
-    assert "mine = 1" in tab.shown()
-    key, entry = written("mine = 2")
-    other_tab.evaluate(change, [key, json.dumps(entry | {"code": "theirs = 1"})])
-    tab.wait(ANSWER, "theirs = 1")
-    assert "mine = 2" in tab.shown()
-    key, entry = written("mine = 3")
-    late = json.dumps(entry | {"code": "theirs = 2"})
-    tab.page.evaluate(
-        "([key, newValue]) => dispatchEvent(new StorageEvent('storage', { key, newValue }))",
-        [key, late],
-    )
-    assert tab.text(ANSWER) == "mine = 3" and "theirs = 2" in tab.shown()
-    assert tab.errors == []
-
-
 # --- where nothing can be kept --------------------------------------------------------------------
 
 
@@ -641,22 +649,6 @@ def test_what_found_no_room_stays_on_the_page_and_can_be_taken_away(context, sit
     other_tab.wait(ANSWER, f"{long}0")
     assert "mine = 9" in other_tab.shown()
     assert tab.errors == other_tab.errors == []
-
-
-def test_text_of_another_tab_is_not_overwritten_where_it_cannot_be_set_aside(context, site):
-    tab = Tab(context, site).edit()
-    tab.write(ANSWER, "mine = 1")
-    (key, entry) = next(iter(tab.page.evaluate(KEPT).items()))
-    theirs = f"theirs = {'3' * 200}"
-    tab.page.evaluate(
-        "([key, text]) => localStorage.setItem(key, text)",
-        [key, json.dumps(json.loads(entry) | {"code": theirs})],
-    )
-    fill(tab)
-    tab.write(ANSWER, "mine = 2")
-    assert "no room left" in tab.words()
-    again = Tab(context, site)
-    again.wait(ANSWER, theirs)
 
 
 @pytest.mark.long

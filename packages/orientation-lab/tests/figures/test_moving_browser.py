@@ -450,10 +450,9 @@ def test_after_enter_a_field_shows_what_the_figure_uses(open_figure):
     """What is being typed is left alone until then."""
     numbers_page, simple = open_figure("nine_numbers"), open_figure("simple")
     entry = numbers_page.get_by_label("row x, column y")
-    angle = simple.get_by_label("theta in degrees")
     for field, typed, used in (
-        (angle, "", "35"),
-        (angle, "270", "-90"),
+        (simple.get_by_label("theta in degrees"), "", "35"),
+        (simple.get_by_label("theta in degrees"), "270", "-90"),
         (entry, "99", "10"),
     ):
         field.fill(typed)
