@@ -1,12 +1,12 @@
-"""The records beside a notebook, as written and read, entry by entry and reader by reader."""
+"""The records beside a notebook, as written and read, entry by entry."""
 
 import json
 from dataclasses import replace
 
 import pytest
 
-from coursework.checking import fields, identity
-from coursework.checking.fields import Fields, Misread
+from coursework.checking import identity
+from coursework.checking.fields import Misread
 from coursework.checking.progress import KEPT, Entry, Progress
 from coursework.checking.question import Place
 
@@ -184,75 +184,6 @@ def test_an_identity_that_cannot_be_kept_or_read_is_said_anew(folder):
     assert identity.identity() == "ann"
 
 
-# --- readers ------------------------------------------------------------------------------------
-
-#: The functions that make readers.
-MAKES = {
-    "many": lambda: fields.many(fields.number),
-    "pair": lambda: fields.pair(fields.whole),
-    "by name": lambda: fields.by_name(fields.text),
-    "one of": lambda: fields.one_of("a", "b"),
-}
-
-
-@pytest.mark.parametrize(
-    ("reader", "right", "wrong", "expected"),
-    [
-        (fields.text, ["", "a"], [1, None, ["a"]], "a string"),
-        (fields.number, [1, 2.5, 0], ["1", True, None], "a number"),
-        (fields.whole, [1, 0], [1.0, True, "1"], "a whole number"),
-        (fields.truth, [True, False], [1, 0, "true"], "true or false"),
-        ("one of", ["a", "b"], ["c", "ab"], "one of 'a', 'b'"),
-        (fields.a_list, [[1, "a"], []], ["a", {"a": 1}], "a list"),
-        ("pair", [(1, 2)], [[1], [1, 2, 3], "ab", {1: 2, 3: 4}], "a list of two"),
-        ("many", [(1, 2), ()], ["ab", {"a": 1}], "a list"),
-        ("by name", [{"a": "b"}, {}], [["a"], "a"], "an object"),
-    ],
-)
-def test_a_reader_gives_what_it_is_for_and_refuses_the_rest(reader, right, wrong, expected):
-    reader = MAKES[reader]() if reader in MAKES else reader
-    for value in right:
-        assert reader(value, "here") == value and type(reader(value, "here")) is type(value)
-    for value in wrong:
-        with pytest.raises(Misread) as error:
-            reader(value, "here")
-        assert str(error.value) == f"here should be {expected}, not {value!r}."
-
-
-@pytest.mark.parametrize(
-    ("reader", "value", "where"),
-    [
-        ("many", [1, "a"], "here"),
-        ("pair", ["a", 1], "here"),
-        ("pair", [1, "a"], "here"),
-        ("by name", {"b": "c", "a": 1}, "here: 'a'"),
-        ("by name", {1: "c"}, "here"),
-    ],
-)
-def test_what_is_wrong_within_is_said_where_it_stands(reader, value, where):
-    with pytest.raises(Misread) as error:
-        MAKES[reader]()(value, "here")
-    assert str(error.value).startswith(f"{where} should be")
-
-
 def test_a_long_value_is_shown_in_part():
     for length, shown in ((58, repr("a" * 58)), (59, "'" + "a" * 59 + "…")):
         assert str(Misread("here", "short", "a" * length)).endswith(f"not {shown}.")
-
-
-def test_fields_are_there_or_may_be_missing():
-    about = Fields({"a": 1, "b": None, "c": "x"}, "here")
-    assert about.get("a", fields.whole) == 1 == about.maybe("a", fields.whole)
-    assert about.maybe("b", fields.whole) is None is about.maybe("d", fields.whole)
-    assert about.beside(["a", "d"]) == {"b": None, "c": "x"}
-    with pytest.raises(Misread, match="^here should be an object with 'd', not 'a, b, c'.$"):
-        about.get("d", fields.whole)
-    for read in (about.get, about.maybe):
-        with pytest.raises(Misread, match="^here: 'c' should be a whole number, not 'x'.$"):
-            read("c", fields.whole)
-    with pytest.raises(Misread, match="^here should be an object"):
-        Fields([], "here")
-
-
-def test_tuples_are_written_as_lists():
-    assert fields.written({"a": (1, [(2,), {"b": ()}])}) == {"a": [1, [[2], {"b": []}]]}

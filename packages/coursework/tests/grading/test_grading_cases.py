@@ -15,9 +15,8 @@ from coursework.__main__ import main
 from coursework.authoring.author import AuthorError
 from coursework.checking import evaluate
 from coursework.checking.plain import read_plain, to_plain
-from coursework.checking.question import Question, Variant
+from coursework.checking.question import Question
 from coursework.checking.variants import (
-    names_of_variants,
     numbers_of_variants,
     siblings_of,
     variant_of,
@@ -455,33 +454,6 @@ def test_a_namespace_of_one_user_is_named_as_the_cause(monkeypatch):
 
 
 # --- variants by their names --------------------------------------------------------------------
-
-
-def test_by_name_a_variant_that_is_taken_out_moves_only_those_who_had_it():
-    names = names_of_variants([Variant(given={"weight": weight}) for weight in WEIGHTS])
-    whole = Variant(names=tuple(names), edition="autumn")
-    students = [f"student {number}" for number in range(300)]
-    before = {one: [names[k] for k in numbers_of_variants(one, NAME, whole, 8)] for one in students}
-    assert {order[0] for order in before.values()} == set(names)
-    for gone in (0, 3, 7):
-        left = names[:gone] + names[gone + 1 :]
-        for order in (left, left[::-1]):
-            about = Variant(names=tuple(order), edition="autumn")
-            for one in students:
-                after = [order[k] for k in numbers_of_variants(one, NAME, about, 7)]
-                assert after == [name for name in before[one] if name != names[gone]]
-    # Another edition, question or student has another order; capitals and spaces make no
-    # difference.
-    assert numbers_of_variants("ann", NAME, whole, 8) == numbers_of_variants(" Ann", NAME, whole, 8)
-    others = dataclasses.replace(whole, edition="")
-    assert (
-        sum(
-            numbers_of_variants(one, NAME, whole, 8) != numbers_of_variants(one, NAME, others, 8)
-            for one in students
-        )
-        > 250
-    )
-    assert numbers_of_variants("", NAME, whole, 8) == list(range(8))
 
 
 def test_a_course_that_gives_variants_by_name_says_so_to_students_and_graders(tmp_path):
