@@ -13,7 +13,7 @@ from places import REPOSITORY
 import orientation
 import orientation_course
 from coursework import check
-from coursework.authoring.source import read_source
+from coursework.authoring.source import names_asked, read_source
 from coursework.checking.kinds import KINDS
 from tools import chapters, new
 
@@ -148,9 +148,11 @@ def test_a_new_chapter_has_all_its_parts(book):
     for cell in nbformat.read("chapters/chapter-of-the-tests.ipynb", as_version=4).cells:
         if "check(" not in cell.source and cell.cell_type == "code":
             exec(cell.source, {})
-    # The question of the first one, which is not written yet, has another name than this one's.
+    # The answer of the first one, which is not written yet, has another name than this one's.
     new.new_chapter("next-of-the-tests", "Next of the tests", None)
-    assert "chapters/next-of-the-tests" in read_source(chapters.CHAPTERS_SOURCE).questions
+    asked = names_asked(chapters.CHAPTERS_SOURCE)
+    answers = [asked[f"chapters/{name}-of-the-tests"] for name in ("chapter", "next")]
+    assert len({*answers}) == 2, answers
 
 
 @pytest.mark.parametrize(
