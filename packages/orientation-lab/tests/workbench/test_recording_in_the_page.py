@@ -18,7 +18,7 @@ def test_what_is_dropped_is_judged_and_can_be_kept(tmp_path, monkeypatch):
     given = simulate(3)
     given["magnetometer"] = given["magnetometer"] + [20.0, -10, 15]
     (tmp_path / "dropped" / "walk <1>.csv").write_text(as_text(given, quaternion=True), "utf8")
-    found = judged()
+    found = judged(convention="xyzw")
     shown = found._repr_html_()
     kept = base64.b64decode(
         re.search(r'download="report.html" href="data:text/html;base64,([^"]+)"', shown)[1]
@@ -31,10 +31,7 @@ def test_what_is_dropped_is_judged_and_can_be_kept(tmp_path, monkeypatch):
         assert "<b>Wrong</b>: offset of the magnetometer." in page
         assert page.count("<svg") >= 3 and "<1>" not in page and "<script" not in page
     assert "offset of the magnetometer" in repr(found)
-    rows = re.search(
-        r'download="corrected.csv" href="data:text/csv;base64,([^"]+)"',
-        judged(convention="xyzw")._repr_html_(),
-    )
+    rows = re.search(r'download="corrected.csv" href="data:text/csv;base64,([^"]+)"', shown)
     corrected = base64.b64decode(rows[1]).decode().splitlines()
     assert corrected[0].endswith("qx,qy,qz,qw") and len(corrected) == 1 + len(found.examined.time)
 
