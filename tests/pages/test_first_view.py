@@ -154,14 +154,6 @@ def test_lecture_mode_begins_with_the_whole_page(open_page):
     assert page.locator(".in-step").last.is_visible()
 
 
-def test_without_script_nothing_is_put_off(open_page):
-    page = open_page(LONG, java_script_enabled=False)
-    assert (
-        page.locator(".later").last.evaluate("(block) => getComputedStyle(block).contentVisibility")
-        == "visible"
-    )
-
-
 def test_the_first_part_ends_at_a_mark_and_not_at_a_word():
     assert (
         first_part('<p>A moment later it</p><p class="a later">more')

@@ -132,12 +132,15 @@ def test_predictions_are_asked_open_or_left_out_as_the_reader_likes(context, sit
 
 
 def test_reads_as_question_and_answer_without_script(browser, site):
+    """Nor is anything put off that a script would have to bring."""
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(f"{site}{CHAPTER}.html")
     box = page.locator(".question").first
     assert box.locator("ol.choices li").count() == box.locator(".replies li").count() >= 2
     assert box.locator("details.replies").is_visible() and page.locator(".covered").count() == 0
+    put_off = "(block) => getComputedStyle(block).contentVisibility"
+    assert page.locator(".later").last.evaluate(put_off) == "visible"
     context.close()
 
 
