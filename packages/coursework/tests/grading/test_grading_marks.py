@@ -227,13 +227,18 @@ def test_secret_calls_are_others_than_those_of_the_check(function, calls, others
         assert any(call not in calls for call in made) == others
 
 
-def test_equal_answers_are_judged_once_and_are_no_less_apart(questions, monkeypatch):
+@pytest.fixture
+def judged(monkeypatch):
+    """The names of the questions judged during a test, with nothing remembered from before."""
+    judged, whole = [], marking.judge
     monkeypatch.setattr(marking, "_marked", {})
-    judged = []
-    whole = marking.judge
     monkeypatch.setattr(
         marking, "judge", lambda name, *rest: judged.append(name) or whole(name, *rest)
     )
+    return judged
+
+
+def test_equal_answers_are_judged_once_and_are_no_less_apart(questions, judged):
     first, again = (
         mark("turns/about-x", questions["turns/about-x"], given(A_C_N)) for _ in range(2)
     )
@@ -362,15 +367,10 @@ def test_the_work_on_a_hostile_answer_is_bounded():
     assert isinstance(huge[0], TooLarge) and huge[3] == 1
 
 
-def test_a_costly_answer_is_not_tried_on_every_variant(questions, monkeypatch):
+def test_a_costly_answer_is_not_tried_on_every_variant(questions, judged):
     other = questions["turns/sum"].contract
     # The other variants know answers that the student's own does not.
     question = Asked(replace(other, known={}), siblings=(other,) * 15)
-    judged, whole = [], marking.judge
-    monkeypatch.setattr(
-        marking, "judge", lambda name, *rest: judged.append(name) or whole(name, *rest)
-    )
-    monkeypatch.setattr(marking, "_marked", {})
     long = {
         "value": ["expression", 1_500],
         "nodes": [["symbol", "alpha"], *(["sin", order] for order in range(1_500))],

@@ -1,13 +1,12 @@
 """An instructor describes the term once, in one file; from then on, commands need no flags."""
 
-import csv
 import json
 import os
 import stat
 
 import nbformat
 import pytest
-from course_by_commands import Course
+from course_by_commands import Course, read_table
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 TERM = """
@@ -53,11 +52,11 @@ def collected(course, student, name, when="2025-10-01 12:00:00", file=None, **an
     return folder
 
 
-def book_of(course):
+def book_of(course, *students):
     rows = [
         {"Student": "", "ID": number, "SIS User ID": "", "SIS Login ID": one, "Section": "x",
          "HW 1 (11)": "", "HW 2 (12)": ""}
-        for number, one in enumerate(STUDENTS, 1)
+        for number, one in enumerate(students or STUDENTS, 1)
     ]  # fmt: skip
     return course.write_table("book.csv", rows)
 
@@ -81,9 +80,7 @@ def test_from_a_new_file_to_filled_columns(tmp_path):
     collected(course, "ada", "hw1", "2025-10-01 09:00:00")
     collected(course, "ada", "hw2", load=6)
     course.grade()
-    rows = [{"Student": "", "ID": 1, "SIS User ID": "", "SIS Login ID": one, "Section": "x",
-             "HW 1 (11)": "", "HW 2 (12)": ""} for one in ("ada", "ben")]  # fmt: skip
-    book = course.write_table("book.csv", rows)
+    book = book_of(course, "ada", "ben")
     said = course.export(book)
     assert course.column(book, "HW 1 (11)") == {"ada": "4", "ben": "0"}
     assert course.column(book, "HW 2 (12)") == {"ada": "0", "ben": "0"}
@@ -236,7 +233,7 @@ def test_who_handed_in_what_is_damaged_did_not_hand_in_nothing(course):
     page = (course.marks / "course" / "students" / "ben.html").read_text()
     assert "your file cannot be graded automatically, so a person has to look at it" in page
     course.run("export", "marks", "--nbgrader", "grades.csv", "--assignment", "hw1")
-    rows = list(csv.DictReader((course.place / "grades.csv").read_text().splitlines()))
+    rows = read_table(course.place / "grades.csv")
     assert [row["student_id"] for row in rows] == ["ada", "cem"]
     assert course.column(book, "HW 1 (11)") == {"ada": "8", "ben": "", "cem": "0", "dan": ""}
 
