@@ -520,7 +520,7 @@ def test_theme_switch_holds_on_the_next_page(browser, site):
 def test_icons_are_seen_in_colours_that_the_system_sets(browser, site):
     context = browser.new_context(viewport=WIDE, forced_colors="active")
     page = context.new_page()
-    page.goto(f"{site}chapters/gimbal-lock.html")
+    page.goto(f"{site}exercises/orientation-filters.html")
     page.wait_for_selector("html:not(.settling, .in-parts)")
     colours = page.evaluate("""() => {
       const icons = [...document.querySelectorAll('[class*="fa-"]')].filter((icon) => icon.checkVisibility());
