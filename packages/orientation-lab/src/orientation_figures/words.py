@@ -217,7 +217,8 @@ class Words:
             points.append(place(far))
         middle, tip = place(at(0.5)), place(at(1))
         depth = self.depth_of([add(origin, at(0.5))])
-        self.path(f"M{'C' * pieces}", points, f"{kind} {colour}", depth)
+        for k, layer in enumerate(layers(kind)):
+            self.path(f"M{'C' * pieces}", points, f"{layer} {colour}", depth + 1e-6 * k)
         if head:
             self.head(tip, unit(subtract(tip, place(at(last)))), size, colour, depth + 1e-6)
         if label:
@@ -272,15 +273,11 @@ class Words:
             radius, unit(level if half and length(level) > 1e-6 else cross(axis, farthest_axis))
         )
         u, v = self.on_sheet(across), self.on_sheet(cross(axis, across))
-        middle, depth = self.on_sheet(origin), self.depth_of([origin])
-        for k, layer in enumerate(layers(kind)):
-            look = f"{layer} {colour}"
-            if half:
-                points = half_round(u, scale(-1, v) if half == "front" else v)
-                self.path("MCC", [add(middle, point) for point in points], look, depth + 1e-6 * k)
-            else:
-                self.ellipse(middle, u, v, look, depth + 1e-6 * k)
-        return self
+        middle, depth, look = self.on_sheet(origin), self.depth_of([origin]), f"{kind} {colour}"
+        if not half:
+            return self.ellipse(middle, u, v, look, depth)
+        points = half_round(u, scale(-1, v) if half == "front" else v)
+        return self.path("MCC", [add(middle, point) for point in points], look, depth)
 
     # Solid bodies. On paper, draw what lies farther from the reader first.
 

@@ -13,7 +13,7 @@ from .state import Numbers, Sequence
 
 
 class GimbalFigure(MovingFigure):
-    r"""A camera gimbal: handgrip $A$, two rings $B$ and $C$, camera $D$.
+    r"""A camera gimbal: handgrip $A$, two arms $B$ and $C$, camera $D$.
 
     Each joint rotates what it carries about one axis, in the order of the sequence, so that the
     angles are body fixed Euler angles. Near gimbal lock the figure says which two sliders rotate
@@ -69,5 +69,4 @@ class GimbalFigure(MovingFigure):
     @property
     def margin(self):
         """Distance of the gimbal from lock, in radians."""
-        [margin] = lock_margin_formula(self.sequence)(NUMBERS, *self.angles)
-        return margin
+        return lock_margin_formula(self.sequence)(NUMBERS, *self.angles)[0]

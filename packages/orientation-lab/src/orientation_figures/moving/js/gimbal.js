@@ -17,7 +17,7 @@ export function render({ model, el }) {
     change(model, { angles });
   };
   const sheet = new Sheet({ bounds: BOUNDS, size: SIZE, camera: [58, 22], changed: () => redraw(),
-    name: 'A camera gimbal: handgrip A, outer ring B, inner ring C, camera D.',
+    name: 'A camera gimbal: handgrip A, outer arm B, inner arm C, camera D.',
     grab(part, at) {
       if (!part) return null;
       stop();
@@ -92,7 +92,7 @@ export function render({ model, el }) {
       sheet.gripLine(PLACES.C(gimbal, 40), 'C');
       sheet.grip(PLACES.D(gimbal)[0], 'D', 22);
     });
-    text.say(lit ? inWords(gimbal.D, ...lit) : more ? situation(gimbal.axes, apartBy, apart) : 'Drag a ring or the camera. Touch a number to see what it measures.');
+    text.say(lit ? inWords(gimbal.D, ...lit) : more ? situation(gimbal.axes, apartBy, apart) : 'Drag an arm or the camera. Touch a number to see what it measures.');
   }
 
   draw();
@@ -107,9 +107,7 @@ const inWords = (D, i, j) => `$\\hat{d}_${AXES[i]}$ · $\\hat{a}_${AXES[j]}$ = $
   + 'the cosine of the angle between them.';
 
 function situation(axes, margin, apart) {
-  if (margin >= CLOSE) {
-    return `The axes of $\\psi$ and $\\varphi$ are ${apart}° apart: three sliders turn the camera in three ways.`;
-  }
+  if (margin >= CLOSE) return `The axes of $\\psi$ and $\\varphi$ are ${apart}° apart: three sliders turn the camera in three ways.`;
   if (margin > LOCKED) {
     return `Close to gimbal lock: the axes of $\\psi$ and $\\varphi$ are ${apart}° apart, so these two sliders turn the camera about `
       + 'nearly the same line.';
@@ -119,12 +117,12 @@ function situation(axes, margin, apart) {
     + `. Trade one for the other and the camera stands still. One degree of freedom is lost.`;
 }
 
-// Points where the reader can take hold of the rings and the camera.
-const circle = (u, v, radius, count) => Array.from({ length: count }, (_, k) => add(
-  scale(radius * Math.cos(2 * k * Math.PI / count), u), scale(radius * Math.sin(2 * k * Math.PI / count), v)));
+// Points where the reader can take hold of the arms and the camera.
+const halfRing = (u, v, radius, count) => Array.from({ length: count }, (_, k) => add(
+  scale(radius * Math.cos(k * Math.PI / (count - 1)), u), scale(radius * Math.sin(k * Math.PI / (count - 1)), v)));
 const PLACES = {
-  B: ({ B, at }, count) => circle(B[at[0]], B[at[1]], OUTER, count),
-  C: ({ C, at }, count) => circle(C[at[1]], C[at[2]], INNER, count),
+  B: ({ axes }, count) => halfRing(axes[1], scale(-1, axes[0]), OUTER, count),
+  C: ({ axes }, count) => halfRing(axes[1], scale(-1, axes[2]), INNER, count),
   // A point beside the axis about which the camera rotates.
   D: ({ D, at }) => [scale(0.3, D[at[2] === 0 ? 2 : 0])],
 };

@@ -133,7 +133,9 @@ export class Words {
     }
     const middle = place(at(0.5)), tip = place(at(1));
     const depth = this.depthOf([add(origin, at(0.5))]);
-    this.path(`M${'C'.repeat(pieces)}`, points, `${kind} ${colour}`, depth);
+    for (const [k, layer] of enumerate(layers(kind))) {
+      this.path(`M${'C'.repeat(pieces)}`, points, `${layer} ${colour}`, depth + 1e-6 * k);
+    }
     if (head) {
       this.head(tip, unit(subtract(tip, place(at(last)))), size, colour, depth + 1e-6);
     }
@@ -157,16 +159,12 @@ export class Words {
     const level = cross(axis, this.view[2]), farthestAxis = IDENTITY[sizes.indexOf(Math.min(...sizes))];
     const across = scale(radius, unit(half && length(level) > 1e-6 ? level : cross(axis, farthestAxis)));
     const u = this.onSheet(across), v = this.onSheet(cross(axis, across));
-    const middle = this.onSheet(origin), depth = this.depthOf([origin]);
-    for (const [k, layer] of enumerate(layers(kind))) {
-      const look = `${layer} ${colour}`;
-      if (half) {
-        const points = halfRound(u, half === 'front' ? scale(-1, v) : v);
-        this.path('MCC', points.map((point) => add(middle, point)), look, depth + 1e-6 * k);
-      } else {
-        this.ellipse(middle, u, v, look, depth + 1e-6 * k);
-      }
+    const middle = this.onSheet(origin), depth = this.depthOf([origin]), look = `${kind} ${colour}`;
+    if (!half) {
+      return this.ellipse(middle, u, v, look, depth);
     }
+    const points = halfRound(u, half === 'front' ? scale(-1, v) : v);
+    return this.path('MCC', points.map((point) => add(middle, point)), look, depth);
   }
   box(dcm, size, { origin = [0, 0, 0], colour = 'ink' } = {}) {
     const half = enumerate(dcm).map(([k, row]) => scale(size[k] / 2, row));
