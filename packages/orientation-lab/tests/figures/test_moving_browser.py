@@ -311,9 +311,9 @@ def test_parts_follow_the_pointer(open_figure, kind, part, corner, way, touch):
 
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("part, name", [("B", "psi"), ("C", "theta")])
-def test_a_ring_stays_under_the_pointer(open_figure, part, name):
-    """Places of one point of a ring, from the slider; held there, the
-    ring follows the pointer along them.
+def test_an_arm_stays_under_the_pointer(open_figure, part, name):
+    """Places of one point of an arm, from the slider; held there, the
+    arm follows the pointer along them.
     """
     page, places = open_figure("gimbal"), []
     for angle in (40, 20, 0, -20, 20):

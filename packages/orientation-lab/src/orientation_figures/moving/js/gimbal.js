@@ -16,7 +16,7 @@ export function render({ model, el }) {
     angles[k] = wrapped(angle);
     change(model, { angles });
   };
-  const sheet = new Sheet({ bounds: BOUNDS, size: SIZE, camera: [58, 22], changed: () => redraw(),
+  const sheet = new Sheet({ bounds: BOUNDS, size: SIZE, camera: [58, 36], changed: () => redraw(),
     name: 'A camera gimbal: handgrip A, outer arm B, inner arm C, camera D.',
     grab(part, at) {
       if (!part) return null;
@@ -118,11 +118,11 @@ function situation(axes, margin, apart) {
 }
 
 // Points where the reader can take hold of the arms and the camera.
-const halfRing = (u, v, radius, count) => Array.from({ length: count }, (_, k) => add(
+const points = (u, v, radius, count) => Array.from({ length: count }, (_, k) => add(
   scale(radius * Math.cos(k * Math.PI / (count - 1)), u), scale(radius * Math.sin(k * Math.PI / (count - 1)), v)));
 const PLACES = {
-  B: ({ axes }, count) => halfRing(axes[1], scale(-1, axes[0]), OUTER, count),
-  C: ({ axes }, count) => halfRing(axes[1], scale(-1, axes[2]), INNER, count),
+  B: ({ axes }, count) => points(axes[1], scale(-1, axes[0]), OUTER, count),
+  C: ({ axes }, count) => points(axes[1], scale(-1, axes[2]), INNER, count),
   // A point beside the axis about which the camera rotates.
   D: ({ D, at }) => [scale(0.3, D[at[2] === 0 ? 2 : 0])],
 };

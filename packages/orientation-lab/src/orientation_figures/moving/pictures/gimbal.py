@@ -145,7 +145,7 @@ def drawing(figure, Sheet):
         f"The axes of psi and phi are {in_degrees(figure.margin)} apart. If they coincide, the "
         "gimbal is locked. "
         "Beside it are the triads of A and D.",
-        view=view_from(math.radians(58), math.radians(22)),
+        view=view_from(math.radians(58), math.radians(36)),
         scale=SIZE,
     )
     return sheet.paint(

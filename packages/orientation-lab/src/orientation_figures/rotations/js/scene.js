@@ -347,8 +347,8 @@ const SHOWS = {
   },
   'nine-shadows'(scene, s, { D }) { shadows(scene, D[s.lit], [0, 1, 2]); },
   'two-motors'(scene, s) {
-    // While the text moves both, the ghost tilts when the camera swings, and swings when the camera tilts.
-    const [psi, theta] = s.free ? s.angles : [s.angles[1] * SWING / TILT, s.angles[0] * TILT / SWING];
+    // The ghost tilts when the text swings the camera, and swings when it tilts. Held, both have the same angles (`own`).
+    const [psi, theta] = [[0, 1, SWING / TILT], [1, 0, TILT / SWING]].map(([k, j, share]) => mix(share * s.angles[j], s.angles[k], s.own));
     const other = dcmFromBodyFixed([theta, psi, 0], 'xzy'), at = add(scale(-1.34, s.right), [0, 0, 0.92]);
     scene.camera(other, { at, size: 0.62, alpha: 0.42 });
     scene.triad('D', other, { origin: at, reach: 0.85, alpha: 0.55, thick: 0.018 });
@@ -552,7 +552,7 @@ export function viewOf(s) {
 
 // The other entries of a state, besides those that a stop changes.
 export const REST = { stop: 'which-way', t: 0, angles: AT_READER, eye: [52, 17], ride: 0, away: 0, lit: 0, part: 0, whole: 0, turn: 0,
-  passed: 0, together: 0, apart: 0, time: 0, start: GENERIC, free: false, thrown: null, track: [] };
+  passed: 0, together: 0, apart: 0, time: 0, own: 0, start: GENERIC, free: false, thrown: null, track: [] };
 
 // Return everything that is seen in a state: { items, labels, view, frames }.
 export function sceneOf(state) {

@@ -21,7 +21,7 @@ const DIALS = {
   whole: ['rotation of the camera', 0, 720, 1, DEGREES, '°'], turn: ['rotation of the camera', 0, 720, 1, DEGREES, '°'],
   passed: ['pass the cable round', 0, 100, 1, 100, '%'], time: ['time', 0, LASTS, 0.1, 1, ' s'],
 };
-const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time'];
+const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time', 'own'];
 const FADES = ['machine', 'camera', 'A', 'D', 'ground'];
 const SWING = [0.5, 0.4, 1.1];   // along A, in radians a second
 const stopOf = (id) => STOPS.find((candidate) => candidate.id === id);
@@ -125,7 +125,8 @@ class World {
       if (top <= line) [now, part] = [section, Math.min(1, Math.max(0, (begins - top) / lasts))];
     }
     this.enter(now.id);
-    this.goal.t = calm() ? stopOf(now.id).still : part;
+    // Even without motion, a scene shows what it asks for only when the reader has read on.
+    this.goal.t = calm() ? (part > 0.25 ? stopOf(now.id).still : 0) : part;
     if ((this.state.free || this.state.thrown) && Math.abs(this.goal.t - this.heldAt) > 0.22 && !this.held) this.takeBack();
     this.wake();
   }
@@ -160,6 +161,7 @@ class World {
     if (course.angles && !state.free) goal.angles = course.angles;
     for (const name of SCALARS) if (!this.set.has(name)) goal[name] = course[name] ?? 0;
     state.lit = this.set.has('lit') ? state.lit : course.lit ?? 0;
+    goal.own = state.free ? 1 : 0;
   }
 
   takeBack() {
