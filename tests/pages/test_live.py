@@ -699,6 +699,7 @@ def test_exercise_is_checked_in_the_page(context, site):
     )
     for code, expected in (
         (with_module, "wrong"),
+        (right, "correct"),
         (f"{right}\nA_C_N = A_C_N.T", "wrong"),
         (right, "correct"),
     ):
@@ -720,6 +721,7 @@ def test_exercise_is_checked_in_the_page(context, site):
     assert "No cell that you have run sets `B_C_N`." in reply and "The book’s result" not in reply
     for slip, said in (
         (right.replace("beta", "betta"), "The cell that sets B_C_N stopped"),
+        (right.replace("B_C_N", "B_C_n"), "The cell that set B_C_N no longer sets it"),
         (f"# {right}", "The cell that set B_C_N no longer sets it"),
     ):
         reply = reply_to(right)
