@@ -264,7 +264,7 @@ class Words:
         """Draw the circle about ``normal``.
 
         ``half`` selects the half nearer to the reader ('front') or farther ('back'); ``kind`` is as
-        in ``line``, or 'fill-8', 'fill-16', ...
+        in ``line`` except for a tube, or 'fill-8', 'fill-16', ...
         """
         axis = unit(normal)
         sizes = [abs(entry) for entry in axis]

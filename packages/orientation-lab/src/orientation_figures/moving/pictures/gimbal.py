@@ -15,7 +15,7 @@ from ...vectors import (
     multiply,
     scale,
     unit,
-)  # fmt: skip
+)
 
 # Radii of the arms B and C and of the camera, and the ends of the axes.
 OUTER = 1.05
