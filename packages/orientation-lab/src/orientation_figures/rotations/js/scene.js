@@ -347,8 +347,8 @@ const SHOWS = {
   },
   'nine-shadows'(scene, s, { D }) { shadows(scene, D[s.lit], [0, 1, 2]); },
   'two-motors'(scene, s) {
-    // The ghost tilts when the text swings the camera, and swings when it tilts. In the reader's hand it has the same angles.
-    const psi = mix(s.angles[1] * SWING / TILT, s.angles[0], s.own), theta = mix(s.angles[0] * TILT / SWING, s.angles[1], s.own);
+    // The ghost tilts when the text swings the camera, and swings when it tilts. Held, both have the same angles (`own`).
+    const [psi, theta] = [[0, 1, SWING / TILT], [1, 0, TILT / SWING]].map(([k, j, share]) => mix(share * s.angles[j], s.angles[k], s.own));
     const other = dcmFromBodyFixed([theta, psi, 0], 'xzy'), at = add(scale(-1.34, s.right), [0, 0, 0.92]);
     scene.camera(other, { at, size: 0.62, alpha: 0.42 });
     scene.triad('D', other, { origin: at, reach: 0.85, alpha: 0.55, thick: 0.018 });
