@@ -12,7 +12,7 @@ import zipfile
 import zlib
 from collections.abc import Iterable, Mapping
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 
 from .fields import Fields, by_name, many, text, whole
 
@@ -182,7 +182,8 @@ def _files_in(archive_file: str | Path) -> dict[str, bytes]:
             entries = [
                 entry
                 for entry in sorted(box.namelist())
-                if not entry.endswith("/") and not Path(entry).name.startswith(".")
+                if not entry.endswith(("/", "\\"))
+                and not PureWindowsPath(entry).name.startswith(".")
             ]
             files = {_place(entry): box.read(entry) for entry in entries}
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError):
@@ -198,8 +199,11 @@ def _files_in(archive_file: str | Path) -> dict[str, bytes]:
 
 
 def _place(entry: str) -> str:
-    """Return where an entry of the archive goes: sealed questions into their own folder."""
-    path = Path(entry)
+    """Return where an entry of the archive goes: sealed questions into their own folder.
+
+    Some programs on Windows write backslashes between folders.
+    """
+    path = PureWindowsPath(entry)
     if path.parent.name == "variants":
         return f"{SEALED}variants/{path.name}"
     return f"{SEALED}{path.name}" if path.parent.name == "sealed" else path.name
