@@ -32,7 +32,11 @@ def kernel(tmp_path_factory):
                 for part in cell.outputs
             )
 
-        run("from coursework import check\nimport sympy as sm\nbeta = sm.Symbol('beta')")
+        # The slip is in the cell that imports coursework, which cannot know how that cell began.
+        assert "as in `student('jdoe')`" in run(
+            "import sympy as sm\nbeta = sm.Symbol('beta')\n"
+            "from coursework import check, student\nstudent(jdoe)"
+        )
         yield run
 
 
@@ -73,6 +77,14 @@ def test_a_cell_that_failed_says_nothing_of_other_answers(kernel):
         ("import numpy\nB_C_N = numpy.cos(beta)", "For an expression with symbols, use"),
         ("import math\nB_C_N = math.cos(beta)", "For an expression with symbols, use"),
         (f"beta = sm.pi/3\n{RIGHT}\n{CHECK}", "<code>beta</code> is not a symbol now: a cell"),
+        ("student(jdoe@uni.example)", "as in `student('jdoe')`"),
+        ("import math\nstudent(0123456)", "as in `student('jdoe')`"),
+        ("student(Jane Doe)", "as in `student('jdoe')`"),
+        ("student(1a2b3c)", "as in `student('jdoe')`"),
+        ("if True:\n    student = 'jdoe'", "as in `student('jdoe')`"),
+        ("student(\u2018jdoe\u2019)", "straight quotation marks"),
+        ("turned_by = \u22122.4", "Type it on the keyboard instead: `-`"),
+        ("turned_by = 2\xa0+ 3", "Type it on the keyboard instead: `-`, `*`, a space"),
     ],
 )
 def test_a_slip_with_a_name_is_followed_by_its_remedy(kernel, written, advice):

@@ -263,8 +263,9 @@ def _release_one(path: Path, course: Course) -> Made:
         )
     (course.sealed / f"{source.name}.json").write_text(sealed_file(source), "utf8")
     if source.name != CHAPTERS:
-        made = exercise_notebook(source, course.roster)
-        nbformat.write(made, course.exercises / f"{source.name}.ipynb")
+        nbformat.write(
+            exercise_notebook(source, course.roster), course.exercises / f"{source.name}.ipynb"
+        )
     pages = {name: source.questions[name].pages for name in source.rules}
     return Made(
         source.name,

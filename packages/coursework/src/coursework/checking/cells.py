@@ -28,8 +28,9 @@ CHANGED = (
     "The cell that set `{0}` no longer sets it, so `{0}` still has an earlier value. We checked "
     "nothing. Set `{0}` in that cell, run it, and then run this check again."
 )
-# What to add to errors of SymPy, NumPy and `math` whose words name neither the slip nor its remedy,
-# by a pattern of these words.
+# What to add to errors whose words name neither the slip nor its remedy, by a pattern of these
+# words and, on the lines below them, the cell's code. The last pattern needs no error: Python
+# accepts `student = 'jdoe'`, which leaves the student with the numbers that earn nothing.
 ADVICE = {
     r"could_extract_minus_sign|FunctionClass": (
         "A function of SymPy stands where an expression is needed: perhaps its parentheses are "
@@ -40,6 +41,15 @@ ADVICE = {
     r"Cannot convert expression to float|ufunc does not support .* type (?!Function)": (
         "Functions of `math` and NumPy take numbers only. For an expression with symbols, use "
         "those of SymPy, such as `sm.cos`, or substitute numbers for its symbols first.\n"
+    ),
+    r"^invalid (non-printable )?character": (
+        "You have probably pasted this character. It may look like one of Python's, but is another "
+        "one. Type it on the keyboard instead: `-`, `*`, a space, straight quotation marks.\n"
+    ),
+    r"(?sm)^name '(\w+)' is not defined.*\bstudent\(\s*\1\b"
+    r"|^(leading zeros|invalid (syntax|decimal)).*\bstudent\(\s*\w|^\s*student\s*=": (
+        "Give your ID in parentheses and quotation marks, as in `student('jdoe')`. Then run this "
+        "cell again.\n"
     ),
 }
 # The message about each name whose value is an earlier one, and the cell that last set each name.
@@ -73,18 +83,21 @@ def begins(info: object) -> None:
 
 
 def ends(result: object) -> None:
-    """Record the names that a cell has not set, or only before an error."""
+    """Record the names that a cell has not set, or only before an error; add advice to errors."""
+    # The cell that imports coursework had begun before there was anybody to record it.
+    code = getattr(getattr(result, "info", None), "raw_cell", None) or _running[0]
+    error = None
     if not getattr(result, "success", True):
         _outdated.update(dict.fromkeys(names_set_by(_running[0]), STOPPED))
         error = getattr(sys, "last_value", None)
-        # JupyterLite shows an empty output even where nothing is printed.
-        if advice := [text for words, text in ADVICE.items() if re.search(words, str(error))]:
-            print(*advice, end="")
-        if type(error) is NameError and re.search(rf"(?s)\bcheck\(.*\b{error.name}\b", _running[0]):
-            print(
-                f"No cell that you have run sets `{error.name}`. If it is spelled right, run the "
-                "cell that sets it, and then run this check again."
-            )
+    # JupyterLite shows an empty output even where nothing is printed.
+    if advice := [text for words, text in ADVICE.items() if re.search(words, f"{error}\n{code}")]:
+        print(*advice, end="")
+    if type(error) is NameError and re.search(rf"(?s)\bcheck\(.*\b{error.name}\b", code):
+        print(
+            f"No cell that you have run sets `{error.name}`. If it is spelled right, run the "
+            "cell that sets it, and then run this check again."
+        )
 
 
 def outdated() -> list[str]:

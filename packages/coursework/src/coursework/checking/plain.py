@@ -461,8 +461,9 @@ class _Writer:
         of_mpmath = _module(type(number)).startswith("mpmath")
         if isinstance(number, numbers.Complex) and not isinstance(number, numbers.Real):
             real, imaginary = self.number(number.real), self.number(number.imag)
-            unit = self.node("constant", "ImaginaryUnit")
-            return self.node("Add", real, self.node("Mul", unit, imaginary))
+            return self.node(
+                "Add", real, self.node("Mul", self.node("constant", "ImaginaryUnit"), imaginary)
+            )
         if of_mpmath and hasattr(number, "_mpf_"):
             return self.node("float", libmp.to_str(number._mpf_, 40))
         if isinstance(number, numbers.Rational):

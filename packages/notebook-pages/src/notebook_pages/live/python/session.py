@@ -309,7 +309,8 @@ class Shell:
         """
         linecache.cache[name] = (len(code), None, code.splitlines(keepends=True), name)
         plain_numpy.begin()
-        self.events.trigger("pre_run_cell", types.SimpleNamespace(raw_cell=code, cell_id=name))
+        info = types.SimpleNamespace(raw_cell=code, cell_id=name)
+        self.events.trigger("pre_run_cell", info)
         with self.printing():
             try:
                 await self.execute(code, name)
@@ -320,8 +321,10 @@ class Shell:
                 outcome = self.explain(error, name)
                 # IPython stores it there, and packages look there for it.
                 sys.last_value = error
-            succeeded = types.SimpleNamespace(success=outcome["status"] == "ok")
-            self.events.trigger("post_run_cell", succeeded)
+            self.events.trigger(
+                "post_run_cell",
+                types.SimpleNamespace(success=outcome["status"] == "ok", info=info),
+            )
         return json.dumps(outcome)
 
     @contextlib.contextmanager
