@@ -50,13 +50,14 @@ FIELD = """() => {
 }"""
 
 
-def test_a_field_takes_a_decimal_comma_and_an_angle_of_more_than_half_a_turn(engine, site):
+def test_a_field_takes_numbers_as_people_write_them(engine, site):
     engine.go(site + CELL)
     engine.wait(SETTLED)
     engine.wait(FIELD)
     engine.click(*engine.wait(FIELD))
     for typed, kind, shown in (
         ("12,5", "number", "12.5"),
+        ("\u22127,5", "number", "-7.5"),
         ("270\n", "range", "-90"),
         ("-181\n", "range", "179"),
     ):

@@ -319,11 +319,11 @@ export function numberField({ name, step = 0.1, min = -Infinity, max = Infinity,
       put(field, 'aria-invalid', String(!valid));
       if (valid) change(value);
     },
-    // A decimal comma is written as a point, because many browsers silently omit it.
+    // Many browsers silently omit a decimal comma, and the minus sign of the book's own numbers.
     beforeinput(event) {
-      if (event.data !== ',') return;
+      if (!/[,\u2212\u2013]/.test(event.data)) return;
       event.preventDefault();
-      document.execCommand('insertText', false, '.');
+      document.execCommand('insertText', false, event.data.replace(',', '.').replace(/[\u2212\u2013]/, '-'));
     },
     // Outside the range, wrap an angle into one turn, and move any other number to the nearest end.
     change() {
