@@ -12,6 +12,7 @@ import re
 import shutil
 from functools import cache
 from hashlib import sha256
+from itertools import chain, pairwise
 from pathlib import Path
 
 from fontTools.ttLib import TTFont
@@ -25,17 +26,17 @@ SANS = NODE_MODULES / "@fontsource-variable" / "source-sans-3" / "files"
 # Characters of the text: those that the book uses, and a few more. A page with any other character
 # fetches the whole face.
 LATIN = (
-    "U+20-7E,U+A0,U+A9,U+B0-B2,U+B5,U+B7,U+D7,U+E0,U+E4,U+E8-E9,U+F6,U+F8,U+FC,U+2009,U+2013-2014,U+2018-2019,"
+    "U+20-7E,U+A0,U+A9,U+B0-B2,U+B5,U+B7,U+B9,U+D7,U+E0,U+E4,U+E8-E9,U+F6,U+F8,U+FC,U+2009,U+2013-2014,U+2018-2019,"
     "U+201C-201D,U+2026,U+202F,U+2032,U+2212"
 )
 SELDOM = "U+A1-FF,U+131,U+152-153,U+2BC,U+2C6,U+2DA,U+2DC,U+200A-200B,U+2010-2026,U+20AC"
 #: Characters of formulas: letters, Greek, operators, brackets and accents.
-GREEK = "U+3B1-3B9,U+3BB,U+3BC,U+3C0,U+3C1,U+3C3,U+3C4,U+3C6-3C9,U+3D5,U+3F5"
+GREEK = "U+3B1-3B9,U+3BB-3BD,U+3C0,U+3C1,U+3C3,U+3C4,U+3C6-3C9,U+3D1,U+3D5,U+3F5"
 FORMULAS = (
     "U+20-7E,U+A0,U+A8,U+AF-B1,U+B4,U+B7,U+D7,U+2C6,U+2C9,U+2D9,U+2DC,U+394,U+398,U+3A3,U+3A6,U+3A9,U+2013-2014,"
-    "U+2018-2019,U+201C-201D,U+2026,U+2032,U+20D7,U+2190-2193,U+21D2,U+21D4,U+2202,U+2208,U+2211-2212,U+2217-2218,"
+    "U+2018-2019,U+201C-201D,U+2026,U+2032,U+20D7,U+2190-2193,U+21D2,U+21D4,U+2202,U+2208,U+2211-2213,U+2217-2218,"
     "U+221A,U+221E,U+2223,U+2225,U+222B,U+223C,U+2248,U+2260-2261,U+2264-2265,U+22A4-22A5,U+2297,U+22C5,U+22EE-22F1,"
-    "U+27E8-27E9,U+27FA"
+    "U+27E8-27E9,U+27F9-27FA,U+E020"
 )
 
 
@@ -55,7 +56,8 @@ FACES = (
     ("Source Sans 3", "400 600", "normal",
      SANS / "source-sans-3-latin-wght-normal.woff2", LATIN, True),
     ("KaTeX_Main", "400", "normal", _katex("Main-Regular"), FORMULAS, True),
-    ("KaTeX_Main", "700", "normal", _katex("Main-Bold"), "U+20-7E,U+A0,U+2C6-2DC,U+D7", True),
+    ("KaTeX_Main", "700", "normal", _katex("Main-Bold"),
+     "U+20-7E,U+A0,U+2C6-2DC,U+D7,U+3A3,U+3A6,U+3A9", True),
     ("KaTeX_Math", "400", "italic", _katex("Math-Italic"), f"U+20-7E,U+A0,{GREEK}", True),
     ("KaTeX_Math", "700", "italic", _katex("Math-BoldItalic"), f"U+20-7E,U+A0,{GREEK}", True),
     *((f"KaTeX_Size{n}", "400", "normal", _katex(f"Size{n}-Regular"), None, False)
@@ -81,14 +83,16 @@ def codes(signs):
 def beyond(file, signs, seldom):
     """Return the ``unicode-range`` of the characters of ``file`` beyond ``signs``.
 
-    It is limited to ``seldom``, if that is given.
+    It is limited to ``seldom``, if that is given. Every page waits for these ranges, so two of them
+    become one where little lies between them, and none of ``signs``.
     """
-    left = sorted(
-        (set(codes(seldom)) if seldom else set(TTFont(file).getBestCmap())) - set(codes(signs))
+    known = set(codes(signs))
+    left = sorted((set(codes(seldom)) if seldom else set(TTFont(file).getBestCmap())) - known)
+    gaps = [(a, b) for a, b in pairwise(left) if b - a > 16 or not known.isdisjoint(range(a, b))]
+    ends = [left[0], *chain(*gaps), left[-1]]
+    return ",".join(
+        f"U+{a:X}" if a == b else f"U+{a:X}-{b:X}" for a, b in zip(ends[::2], ends[1::2])
     )
-    starts = [code for code in left if code - 1 not in left]
-    ends = [code for code in left if code + 1 not in left]
-    return ",".join(f"U+{a:X}" if a == b else f"U+{a:X}-{b:X}" for a, b in zip(starts, ends))
 
 
 def cut(file, signs, weights):

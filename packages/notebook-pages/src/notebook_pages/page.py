@@ -163,8 +163,12 @@ def sorted_out(site, name, rules, *others):
     result is cached under ``name``, because the pages nearly always contain the same names as in
     the last build.
     """
-    files = (path for path in others if isinstance(path, Path))
-    inputs = [PURGE, NODE_MODULES / ".package-lock.json", names_of(site), *files]
+    inputs = [
+        PURGE,
+        NODE_MODULES / ".package-lock.json",
+        names_of(site),
+        *(path for path in others if isinstance(path, Path)),
+    ]
     inputs_as_text = "\0".join(
         [rules, *map(str, others), *(path.read_text("utf8") for path in inputs)]
     )
@@ -184,18 +188,15 @@ def sorted_out(site, name, rules, *others):
     return parts
 
 
-def purged(site, name, rules, *others):
-    """Return the rules that some page, or one of the scripts or style sheets ``others``, uses."""
-    return sorted_out(site, name, rules, *others)[0]
-
-
 def as_script(styles):
     """Return a style sheet as the beginning of a script that adds it, and delete its file."""
     make_small(styles.parent, [styles], "warning")
     rules = json.dumps(styles.read_text("utf8").strip())
     styles.unlink()
-    element = f"Object.assign(document.createElement('style'), {{textContent: {rules}}})"
-    return f"document.head.append({element});\n"
+    return (
+        "document.head.append("
+        f"Object.assign(document.createElement('style'), {{textContent: {rules}}}));\n"
+    )
 
 
 def take_later(site, styles):
@@ -249,7 +250,7 @@ def bundle_styles(site):
         )
         # Threads suffice, because each waits for its own process.
         with ThreadPoolExecutor() as pool:
-            purged_sheets = pool.map(lambda sheet: purged(site, *sheet), sheets)
+            purged_sheets = pool.map(lambda sheet: sorted_out(site, *sheet)[0], sheets)
         rules = [
             *purged_sheets,
             whole_face_rules("fonts"),
@@ -278,9 +279,11 @@ def join_scripts(site):
             "The theme's script no longer finds the scrolling boxes with the code "
             "that page.py replaces"
         )
-    # The theme lays out the page at once. In a task of its own it does not hold up a reader who
-    # touches the page meanwhile.
-    theme.write_text(f"setTimeout(() => {{\n{text}\n}})", "utf8")
+    # The theme lays out the page at once, and a long page has many buttons for copying. In tasks of
+    # their own they do not hold up a reader who touches the page meanwhile.
+    buttons = static / "copybutton.js"
+    for path, script in ((buttons, buttons.read_text("utf8")), (theme, text)):
+        path.write_text(f"setTimeout(() => {{\n{script}\n}})", "utf8")
     begin = take_later(site, static / STYLE)
     files = {name for page in pages_of(site) for name in JOINED.findall(page.read_text("utf8"))}
     for file in files:

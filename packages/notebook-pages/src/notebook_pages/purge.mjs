@@ -13,9 +13,10 @@ import { fileURLToPath } from "node:url";
 const [modules, notes, sheet, ...files] = process.argv.slice(2);
 const require = createRequire(join(modules, "package.json"));
 
-// All words of a script that are inside quotation marks.
+// All words inside quotation marks. esbuild gives each statement a line, as two strings on one would enclose code.
 function quoted(script) {
-  const strings = script.replace(/^\s*\/\/.*$/gm, "").match(/"[^"\n]*"|'[^'\n]*'|`[^`]*`/g) ?? [];
+  const { code } = require("esbuild").transformSync(script, { legalComments: "none" });
+  const strings = code.match(/"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'|`[^`]*`/g) ?? [];
   return strings.join(" ").match(/[A-Za-z][\w-]*/g) ?? [];
 }
 // The elements, ids, classes and attributes of a page, but not the words of its text. The words of its inline scripts
@@ -74,9 +75,8 @@ async function purged(css, scripts, options) {
 }
 
 const css = sheet === "--of" ? "" : readFileSync(sheet, "utf8");
-if (sheet === "--of") {
-  writeFileSync(notes, JSON.stringify(namesOf(files[0])));
-} else if (files[0] === "--later") {
+if (sheet === "--of") writeFileSync(notes, JSON.stringify(namesOf(files[0])));
+else if (files[0] === "--later") {
   // Number the rules. The rules that remain for the pages alone are needed at once. The reader's actions that need no
   // script, such as pointing at something, are replaced by [open], which always exists. Rules with an address are kept
   // too, because the address would mean something else in another file.

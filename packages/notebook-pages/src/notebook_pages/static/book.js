@@ -61,11 +61,11 @@ addEventListener("load", () => requestAnimationFrame(() => {
 // its place. Lines are looked for at a few heights only, because measuring all of them would lay out the whole page.
 {
   const LINE = ".bd-article :is(h1, h2, h3, p, li, tr, pre, .cm-line, .math):not(figure *)";
-  let kept, place, timer, width = innerWidth;
+  let kept, place, timer, width; // measured at the first scroll, because that lays out the page
   const topOf = (line) => line.getBoundingClientRect().top;
   const begins = (line) => line && topOf(line) > 0 && topOf(line) < innerHeight;
   const remember = () => {
-    if (innerWidth !== width) return;
+    if (innerWidth !== (width ??= innerWidth)) return;
     const { left } = document.querySelector(".bd-article").getBoundingClientRect();
     const lines = Array.from({ length: 40 }, (_, k) => document.elementFromPoint(left + 60, innerHeight * k / 40)?.closest(LINE));
     kept = scrollY && [document.querySelector(".bd-article :focus:not(figure *)"), ...lines].find(begins);
