@@ -19,7 +19,7 @@ from places import HTML, REPOSITORY, every_day, html_pages
 from playwright.sync_api import TimeoutError
 
 import orientation_recordings as recordings
-from notebook_pages import mathematics
+from notebook_pages import fonts, mathematics
 from notebook_pages.lighten import lighten, share_outlines
 from orientation_figures.plot import Plot
 
@@ -141,8 +141,9 @@ class Visit:
 
     def shift(self):
         """Return how far lines moved, without the change of typefaces that came late again."""
-        late = self.page.evaluate("document.documentElement.dataset.typefaces === 'late'")
-        return 0 if late else self.page.evaluate("window.shift")
+        return self.page.evaluate(
+            "document.documentElement.dataset.typefaces === 'late' ? 0 : window.shift"
+        )
 
     def note_request(self, request):
         if not request.url.startswith((self.site, "data:", "blob:")):
@@ -202,13 +203,10 @@ def test_page_in_dark_and_narrow(browser, site, name):
         assert page.evaluate("document.documentElement.dataset.theme") == "dark"
         assert visit.shift() < LARGEST_SHIFT
         assert page.evaluate(SIDEWAYS) <= 0, "the page scrolls sideways"
-        boxes = page.eval_on_selector_all(
+        assert page.eval_on_selector_all(
             ".math-box",
-            "all => all.map(b => [b.scrollWidth > b.clientWidth + 1, b.tabIndex === 0])",
-        )
-        assert all(overflows == stop for overflows, stop in boxes), (
-            "only wide boxes are stops of the Tab key"
-        )
+            "all => all.every(b => b.scrollWidth > b.clientWidth + 1 === (b.tabIndex === 0))",
+        ), "only wide boxes are stops of the Tab key"
         assert page.evaluate(WITHOUT_SHADOW) == []
         # The thousands of elements of formulas have the colour of the text around them, and were
         # checked on the wide pages.
@@ -270,10 +268,13 @@ def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_
         page.wait_for_selector("html:not(.settling) main", state="attached")
         page.evaluate("new Promise((drawn) => requestAnimationFrame(() => setTimeout(drawn)))")
         page.evaluate("document.fonts.ready.then(() => true)")
-        addresses = page.evaluate(
-            "performance.getEntriesByType('resource').map(({ name }) => name)"
-        )
-        return [address.removeprefix(site) for address in addresses if address.endswith(".woff2")]
+        return [
+            address.removeprefix(site)
+            for address in page.evaluate(
+                "performance.getEntriesByType('resource').map(({ name }) => name)"
+            )
+            if address.endswith(".woff2")
+        ]
 
     page = browser.new_page(viewport=WIDE)
     # Held, not refused: a document that has ended before its first frame is laid out as a whole.
@@ -297,6 +298,14 @@ def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_
     )
 
 
+def test_reduced_typefaces_have_every_character_of_the_formulas():
+    """A character that only the whole typeface has makes the page lay out all formulas twice."""
+    reduced = set(fonts.codes(f"{fonts.FORMULAS},{fonts.GREEK}"))
+    for name in PAGES:
+        drawn = "".join(re.findall(r"<i aria-hidden=true>(.*?)</span>", text(name), re.DOTALL))
+        assert set(map(ord, unescape(re.sub("<[^>]*>", "", drawn)))) <= reduced, name
+
+
 def test_no_page_is_heavy():
     weights = {name: (HTML / name).stat().st_size for name in PAGES}
     assert weights.pop("rotations.html") < ESSAY
@@ -311,29 +320,22 @@ def test_what_programs_and_plots_repeat_is_said_in_few_words():
     assert plot.startswith('<svg aria-label="a > b"><style>.s') and plot.count("stroke:red") == 1
     assert len(set(re.findall(r'class="(s\w+)"', plot))) == 1 and plot.count("class=") == 3
     assert lighten(f"<svg>{line * 2}</svg>") == f"<svg>{line * 2}</svg>"
-    drawing = (
+    assert lighten(
         '<svg><path d="M10 0L-2.26 0.04C0 1 2 3 4 5Z"/><g transform="translate(-0.54 3.06)"/></svg>'
-    )
-    assert lighten(drawing) == (
+    ) == (
         '<svg><path d="m10 0-12.3 0c2.3 1 4.3 3 6.3 5z"/><g transform="translate(-.5 3.1)"/></svg>'
     )
-    text = (
-        "<pre>"
-        + "".join(f'<span class="{name}">1</span>' for name in ("sa", "s1", "mi"))
-        + "</pre>"
-    )
-    assert lighten(text) == "<pre><i class=s>11</i><i class=m>1</i></pre>"
+    words = "".join(f'<span class="{name}">1</span>' for name in ("sa", "s1", "mi"))
+    assert lighten(f"<pre>{words}</pre>") == "<pre><i class=s>11</i><i class=m>1</i></pre>"
 
 
 def test_letters_of_drawings_stand_once_on_a_page():
     for name in PAGES:
-        outlines = re.findall(r' d="(m[^"]*q[^"]{60,}z)"', text(name))
-        assert len(outlines) == len(set(outlines)), name
-        names = re.findall(r'<path id="(o\d+)"', text(name))
-        used = set(re.findall(r'<use [^>]*href="#([^"]*)"', text(name)))
-        assert len(names) == len(set(names)) and used <= set(
-            re.findall(r'\bid="([^"]*)"', text(name))
-        ), name
+        for part in (r' d="(m[^"]*q[^"]{60,}z)"', r'<path id="(o\d+)"'):
+            outlines = re.findall(part, text(name))
+            assert len(outlines) == len(set(outlines)), name
+        shown = re.findall(r'<use [^>]*href="#([^"]*)"', text(name))
+        assert set(shown).issubset(re.findall(r'\bid="([^"]*)"', text(name))), name
 
 
 # Show formulas, and return where each letter is, from the corner of its box.
@@ -404,10 +406,9 @@ def stand_as_katex_sets_them(run, within=1):
 
 
 def test_light_formulas_stand_as_katex_sets_them(browser, site):
-    page = browser.new_page(viewport=WIDE)
-    page.goto(f"{site}/index.html")
-    stand_as_katex_sets_them(page.evaluate)
-    page.close()
+    with browser.new_page(viewport=WIDE) as page:
+        page.goto(f"{site}/index.html")
+        stand_as_katex_sets_them(page.evaluate)
 
 
 def test_a_formula_is_as_wide_in_the_list_of_sections_as_in_its_heading(browser, site):
