@@ -111,6 +111,8 @@ def test_one_notebook_is_released_alone(tmp_path):
         ({}, "coursework new COURSE"),
         ({"course.toml": "title = 3"}, "course.toml: .*the settings are title"),
         ({"course.toml": "titel = 'Statics'"}, "course.toml: .*but not 'titel'"),
+        # Windows' editor may put a byte order mark first.
+        ({"course.toml": "\ufefftitel = 'Statics'"}, "course.toml: .*but not 'titel'"),
         ({"course.toml": "title = "}, "course.toml: .*Invalid value"),
         (
             # Git leaves this after a merge with conflicts.
@@ -123,7 +125,7 @@ def test_a_course_that_cannot_be_read_is_refused(tmp_path, monkeypatch, files, s
     monkeypatch.chdir(tmp_path)
     for name, text in files.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(text)
+        (tmp_path / name).write_text(text, "utf8")
     with pytest.raises(SystemExit, match=says):
         main(["release"])
 

@@ -47,7 +47,7 @@ due = 2026-10-25T02:30:00
 def rules(tmp_path):
     def read(text=RULES, roster=None):
         path = tmp_path / "term.toml"
-        path.write_text(f"roster = '{roster}'\n{text}" if roster else text)
+        path.write_text(f"roster = '{roster}'\n{text}" if roster else text, "utf8")
         return term.read_term(path)
 
     return read
@@ -202,6 +202,8 @@ def test_what_is_dropped_is_best_for_the_student(rules):
             "assignments.turns.times must be a string, not 3",
         ),
         ('"Europe/Amsterdam"', "Europe", "line 3"),
+        # Windows' editor may put a byte order mark first.
+        ('\nname = "Autumn 2026"', "\ufeffnaem = 'Autumn'", "line 1: unknown key 'naem'"),
     ],
 )
 def test_a_rule_that_is_misspelt_is_said(rules, before, after, says):

@@ -106,7 +106,7 @@ def links_of(folder: str | Path) -> dict[str, str]:
 
 def _read(path: Path) -> Course:
     try:
-        said = tomllib.loads(path.read_text("utf8"))
+        said = tomllib.loads(path.read_text("utf-8-sig"))
     except ValueError as error:
         raise AuthorError(f"{path}: {error}") from None
     if said.get("variants", BY_NAME) != BY_NAME:

@@ -290,7 +290,7 @@ class _File:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.text = path.read_text("utf8") if path.exists() else ""
+        self.text = path.read_text("utf-8-sig") if path.exists() else ""
         #: The time zone of the times in it.
         self.zone: datetime.tzinfo = datetime.UTC
 
@@ -488,7 +488,7 @@ def read_term(path: str | Path) -> Term:
     """
     path = Path(path)
     try:
-        said: dict[str, object] = tomllib.loads(path.read_text("utf8"))
+        said: dict[str, object] = tomllib.loads(path.read_text("utf-8-sig"))
     except (OSError, ValueError) as error:
         advice = (
             ". Create it with `coursework term new`."
