@@ -17,8 +17,11 @@ if TYPE_CHECKING:
     from .store import Store
 
 
-def _moment(text: str) -> datetime.datetime:
-    """Read a time that a person typed, by the clocks of this machine if it has no time zone."""
+def time(text: str) -> datetime.datetime:
+    """Read a time that a person typed, by the clocks of this machine if it has no time zone.
+
+    The errors of the command call the value by this function's name.
+    """
     return datetime.datetime.fromisoformat(text).astimezone()
 
 
@@ -194,7 +197,7 @@ ARGUMENTS = {
             argument(
                 "--as-of",
                 metavar="TIME",
-                type=_moment,
+                type=time,
                 help="export only marks that were decided and due by this time, such as "
                 "2026-12-01T12:00 (default: now)",
             ),
@@ -417,8 +420,13 @@ def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes
     missing = [path for path in files if not Path(path).is_file()]
     if missing:
         sys.exit(
-            f"coursework merge: {missing[0]} does not exist. A grader who has made no decisions "
-            "has no journal; in that case, leave this file out."
+            f"coursework merge: {missing[0]} "
+            + (
+                "is a folder. Give the file journal.jsonl in it."
+                if Path(missing[0]).is_dir()
+                else "does not exist. A grader who has made no decisions has no journal; in that "
+                "case, leave this file out."
+            )
         )
     journal, store = Journal(Path(out), dry_run), Store(out)
     for path in files:

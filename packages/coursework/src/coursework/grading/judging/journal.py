@@ -30,7 +30,7 @@ from ..locks import lock
 from ..reading import AsJson
 from ..record import Judged, Mark, Record
 from ..submissions.roster import cells_in
-from ..tables import as_written
+from ..tables import as_written, in_a_line
 
 FILE = "journal.jsonl"
 #: The file for the beginning of a line that was not yet complete when the machine stopped.
@@ -732,7 +732,8 @@ class Journal:
         raise ValueError(
             f"{path}: a table of decisions is a copy of undecided.csv that keeps its "
             "columns id and version and has credit filled in; a table of appeals has the columns "
-            f"student, question and words. This table has {', '.join(sorted(header)) or 'none'}."
+            f"student, question and words. This table has "
+            f"{in_a_line(', '.join(sorted(header)), 300) or 'none'}."
         )
 
     def _take_in_decisions(

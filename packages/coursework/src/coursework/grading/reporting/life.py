@@ -28,7 +28,11 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
     if given and record is None or not given and not expected:
         own = sorted(name for owner, name in all_given if owner == whose)
         known = own or sorted({owner for owner, _ in all_given})
-        near = difflib.get_close_matches(assignment if own else student, known, 1)
+        typed = assignment if own else student
+        near = [
+            *(name for name in known if name.casefold() == typed.casefold()),
+            *difflib.get_close_matches(typed, known, 1),
+        ]
         raise ValueError(
             f"{student!r} has no marks for {assignment!r} in {store.folder}. There are "
             f"marks for {', '.join(known[:40]) or 'nobody yet'}"

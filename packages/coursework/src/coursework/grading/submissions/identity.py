@@ -342,9 +342,12 @@ class Layout:
     def _github(self, parts: Parts) -> Claim | None:
         user = parts[0].removeprefix(self.prefix)
         # Anybody can choose a GitHub name, so match it only with the column `github` of the roster.
-        keys = (("github", user),)
         return Claim(
-            _clean(user), keys, f"repository {parts[0]}", _inside(parts), reply=f"{parts[0]}/"
+            _clean(user),
+            (("github", user),),
+            f"repository {parts[0]}",
+            _inside(parts),
+            reply=f"{parts[0]}/",
         )
 
     def _own(self, parts: Parts) -> Claim | None:
