@@ -336,12 +336,14 @@ def _when(one: Notebook, others: Others, layout: Layout) -> str:
     return ""
 
 
-#: The formats of times of nbgrader, Moodle in English and spreadsheets.
+#: The formats of times of nbgrader, Moodle in English and spreadsheets, also German ones.
 FORMATS = (
     "%Y-%m-%d %H:%M:%S.%f",
     "%A, %d %B %Y, %I:%M %p",
     "%A, %B %d, %Y, %I:%M %p",
     "%A, %d %B %Y, %H:%M",
+    "%d.%m.%Y %H:%M",
+    "%d.%m.%Y %H:%M:%S",
 )
 
 
@@ -350,6 +352,8 @@ def as_time(text: str) -> str | None:
 
     >>> as_time("2026-11-21 20:01:00.5 UTC"), as_time("Saturday, 21 November 2026, 8:01 PM")
     ('2026-11-21T20:01:00.500000+00:00', '2026-11-21T20:01:00')
+    >>> as_time("21.11.2026 20:01"), as_time("21.11.2026 20:01:30")
+    ('2026-11-21T20:01:00', '2026-11-21T20:01:30')
     """
     bare = text.strip()
     zone = next((zone for zone in (" UTC", " GMT") if bare.endswith(zone)), "")
