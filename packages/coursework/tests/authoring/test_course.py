@@ -119,6 +119,13 @@ def test_one_notebook_is_released_alone(tmp_path):
             {"course.toml": "", "solutions/trial.ipynb": "<<<<<<< HEAD"},
             "solutions/trial.ipynb is not a notebook that we can read .*line 1",
         ),
+        *(
+            (
+                {"course.toml": "", f"solutions/{name}.ipynb": "{}", "solutions/trial.ipynb": "{}"},
+                f"{name}.ipynb: rename this notebook, .* such as week-2",
+            )
+            for name in ("week_2", "Week2", "Woche 2", "übung", "long" * 16)
+        ),
     ],
 )
 def test_a_course_that_cannot_be_read_is_refused(tmp_path, monkeypatch, files, says):

@@ -28,7 +28,7 @@ from ..checking import fields, sealing
 from ..checking.evaluate import MP
 from ..checking.identity import PLACEHOLDER
 from ..checking.question import FORMAT
-from ..checking.questions import beside, salt_of_all
+from ..checking.questions import NOTEBOOK, beside, salt_of_all
 from ..checking.reading import canonical, read
 from ..checking.variants import image
 from .author import AuthoredQuestion, AuthorError, Pages, solution_code
@@ -211,7 +211,7 @@ def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:
     except CellExecutionError as error:
         raise AuthorError(
             f"The notebook for students does not run with its blanks empty: {error.ename}: "
-            f"{error.evalue}. Does a cell outside the solutions use an answer? "
+            f"{error.evalue.rstrip('.')}. Does a cell outside the solutions use an answer? "
             f"{error.traceback.partition(chr(10) * 3)[0]}"
         ) from None
     for cell in notebook.cells:
@@ -461,6 +461,11 @@ def release(
     """
     _demand_sources(course, {path.stem for path in notebooks_in(course.sources)})
     paths = notebooks_in(course.sources, only)
+    if unfit := [path.name for path in paths if not NOTEBOOK.fullmatch(path.stem)]:
+        raise AuthorError(
+            f"{unfit[0]}: rename this notebook, and its questions in it. A name such as week-2 "
+            "consists of at most 60 letters from a to z in lower case, digits and hyphens."
+        )
     for folder in (course.exercises, course.sealed):
         folder.mkdir(parents=True, exist_ok=True)
     with processes_for(paths) as pool:

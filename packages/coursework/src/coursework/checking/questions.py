@@ -33,6 +33,8 @@ from .reading import Reading, canonical, distance, fault, fingerprint, read, tol
 from .reply import Reply
 from .variants import Given, names_of_variants, own_variant, siblings_of, text_of, without_sibling
 
+# The names of notebooks, from which students' machines make the names of files.
+NOTEBOOK = re.compile("[a-z0-9-]{1,60}")
 # A file in a folder of sealed questions with the address of the missing ones. Only a browser's
 # Python has it.
 ELSEWHERE = "elsewhere.txt"
@@ -109,7 +111,7 @@ def notebook_questions(notebook: str, variant: int = 0) -> dict[str, Sealed]:
 
 def _file(notebook: str, variant: int = 0) -> dict[str, dict[str, Json]]:
     """Read the fields of each question in a file of sealed questions, by name."""
-    if not re.fullmatch("[a-z0-9-]{1,60}", notebook):
+    if not NOTEBOOK.fullmatch(notebook):
         return {}
     name = f"variants/{notebook}-{variant}.json" if variant else f"{notebook}.json"
     content = next(

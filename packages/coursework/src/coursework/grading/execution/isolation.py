@@ -230,8 +230,10 @@ def mount_own_scratch(folder: str, size: int, user: int) -> None:
     _call("unshare", _library.unshare(CLONE_NEWNS))
     _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))
     options = f"size={size},nr_inodes={max(64, size // 4096)},mode=0700,uid={user},gid={user}"
-    flags = MS_NOSUID | MS_NODEV
-    _call("mount", _library.mount(b"tmpfs", folder.encode(), b"tmpfs", flags, options.encode()))
+    _call(
+        "mount",
+        _library.mount(b"tmpfs", folder.encode(), b"tmpfs", MS_NOSUID | MS_NODEV, options.encode()),
+    )
 
 
 # ---- Landlock

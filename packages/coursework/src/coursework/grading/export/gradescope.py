@@ -224,8 +224,7 @@ def prepare(home: Path = HOME) -> None:
     from ..assignments import Course
 
     term = term_of(home / "source")
-    course = Course(home / "source" / "solutions", term)
-    course.questions(term.assignments, home)
+    Course(home / "source" / "solutions", term).questions(term.assignments, home)
 
 
 if __name__ == "__main__":

@@ -529,8 +529,12 @@ class Journal:
                 if state == RAISED
                 else "Give the reason for rejecting the appeal."
             )
-        first = of.id if of else ""
-        one = Appeal(**_on(record, question) | more, state=state, words=words, appeal=first)
+        one = Appeal(
+            **_on(record, question) | more,
+            state=state,
+            words=words,
+            appeal=of.id if of else "",
+        )
         self.append([one], collisions=True)
         return one
 
