@@ -256,6 +256,11 @@ SAID = [
     (lines(lambda k: f"label{k // 10}", f"which,{SIX}", 6000), "accelerometer"),
     # An arrow stands for the Arduino IDE only if it follows the time of each row.
     (lines(lambda k: f"{k},up -> down", f"time (ms),note,{SIX}"), "in ms||"),
+    (lines(lambda k: f"{1.7645e9 + k / 100:.2f}", f"epoch,{SIX}"), "epoch, in s|"),
+    (
+        lines(lambda k: f"10/25/2026 02:59:{k / 10:04.1f} AM", f"when,{SIX}"),
+        "left out column 1 (when): '10/25/2026 02:59:07.4 AM' is a time of a form that we cannot",
+    ),
     (lines(lambda k: f"9:05:{k / 100:06.3f} -> {k}", f"time,count,{SIX}"), "time, in s|count|"),
     (
         lines(lambda k: k, f"time (ms),{SIX},motionYaw(rad),motionPitch(rad),rollDeg", columns=10),
@@ -273,7 +278,7 @@ SAID = [
 @pytest.mark.parametrize(("text", "words"), SAID)
 def test_times_and_further_columns_are_told(text, words):
     found = read_content(text, "recording")
-    said = f"{found.clock}|{', '.join(found.unused)}|{list(found.groups)}"
+    said = f"{found.clock}|{', '.join(found.unused)}|{list(found.groups)}|{found.remarks}"
     assert words in said and {"gyroscope", "accelerometer"} <= set(found.groups), said
 
 

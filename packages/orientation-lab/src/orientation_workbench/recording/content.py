@@ -43,7 +43,7 @@ UNITS = {
 #: Words of a heading that do not name its sensor, and words that are units unless they come first.
 BESIDE = "cal uncal raw ln wr adc smooth element axis value".split()
 UNIT_WORDS = "m s s2 ms2 mps2 rad deg dps per sec g mg ga ut micro t".split()
-CLOCK = r"\btime|stamp|elapsed|clock|\bt$|\bsec"
+CLOCK = r"\btime|stamp|elapsed|clock|epoch|\bt$|\bsec"
 COUNTER = r"counter|packet|number|index|frame|iteration|tick|\bsample\b(?! time)|\bcount$|\bid$"
 RATE = r"(?:rate|frequency)[\W_]*(\d+(?:\.\d+)?)\s*hz"
 #: The kinds of columns that the bench can use.

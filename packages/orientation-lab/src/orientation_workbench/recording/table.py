@@ -431,7 +431,15 @@ def _table(
         raise BrokenTable(
             f"{name}: {len(broken)} of {len(kept) + len(broken)} rows cannot be read: {told}"
         )
-    remarks = [f"left out {number_of(len(broken), 'row')}: {told}"] if broken else []
+    remarks = [
+        *([f"left out {number_of(len(broken), 'row')}: {told}"] if broken else []),
+        *(
+            f"left out column {k + 1} ({columns[k]}): {sample[0][1][k][:30]!r} is a time of a form "
+            "that we cannot read"
+            for k in range(width)
+            if k not in numeric and re.search(r"\d:\d\d(?!\d)", sample[0][1][k])
+        ),
+    ]
     head = "\n".join(",".join(row) for _, row in there[:begin])
     return Table(name, [columns[k] for k in numeric], np.array(kept, dtype=float), remarks, head)
 
