@@ -259,7 +259,7 @@ def test_late_words_leave_the_reader_there_and_numbers_lead_to_the_workbench(bro
 def test_page_of_the_search_asks_what_its_address_says(browser, site):
     with Visit(browser, site, "search.html?q=Rodriguez formula", "light", WIDE) as visit:
         first = visit.page.locator("#search-results a").first
-        first.wait_for()
+        first.focus()
         assert "rodrigues-formula" in first.get_attribute("href")
         assert violations(visit.page) == [] and visit.faults == []
 

@@ -66,7 +66,7 @@ addEventListener("load", () => requestAnimationFrame(() => {
   const begins = (line) => line && topOf(line) > 0 && topOf(line) < innerHeight;
   const remember = () => {
     if (innerWidth !== (width ??= innerWidth)) return;
-    const { left } = document.querySelector(".bd-article").getBoundingClientRect();
+    const { left } = document.querySelector(".bd-article, .bd-search-container").getBoundingClientRect();
     const lines = Array.from({ length: 40 }, (_, k) => document.elementFromPoint(left + 60, innerHeight * k / 40)?.closest(LINE));
     kept = scrollY && [document.querySelector(".bd-article :focus:not(figure *)"), ...lines].find(begins);
     place = kept && topOf(kept);
@@ -135,25 +135,20 @@ document.addEventListener("copy", (event) => {
 const report = document.querySelector("a.report-mistake");
 report?.addEventListener("click", () => {
   const above = [...document.querySelectorAll(".bd-article :is(h1, h2, h3)")].filter((h) => h.getBoundingClientRect().top < innerHeight / 2);
-  const address = new URL(report.href);
-  const section = above.at(-1)?.cloneNode(true);
+  const address = new URL(report.href), { searchParams } = address, section = above.at(-1)?.cloneNode(true);
   section?.querySelectorAll(".headerlink").forEach((link) => link.remove());
-  const body = address.searchParams.get("body").replace(/^Section: .*$/m, `Section: ${section?.textContent.trim() ?? ""}`);
-  address.searchParams.set("body", body);
+  searchParams.set("body", searchParams.get("body").replace(/^Section: .*$/m, `Section: ${section?.textContent.trim() ?? ""}`));
   report.href = address;
 });
 
 // Close the take-away menu like any menu: by Escape, or by a click elsewhere.
 const menu = document.querySelector("details.take-away");
-if (menu) {
-  document.addEventListener("click", ({ target }) => { menu.open &&= menu.contains(target); });
-  menu.addEventListener("keydown", (event) => {
-    if (event.key === "Escape" && menu.open) {
-      menu.open = false;
-      menu.querySelector("summary").focus();
-    }
-  });
-}
+document.addEventListener("click", ({ target }) => menu?.contains(target) || menu?.removeAttribute("open"));
+menu?.addEventListener("keydown", (event) => {
+  if (event.key !== "Escape" || !menu.open) return;
+  menu.open = false;
+  menu.querySelector("summary").focus();
+});
 
 // Numbers in columns and lines of code keep their lines: on a narrow screen they scroll. Same as in live/js/output.js.
 for (const text of document.querySelectorAll("div.cell_output .output pre"))
@@ -167,16 +162,21 @@ for (const output of document.querySelectorAll("div.cell_output > .output"))
 document.addEventListener("click", ({ target }) => target.closest("dialog a[href^='#']")?.closest("dialog").close());
 
 document.querySelector("button.print-page")?.addEventListener("click", () => print());
+// Paper is white: print in the colours for a light page.
+addEventListener("beforeprint", () => {
+  const { dataset } = document.documentElement, { theme } = dataset;
+  addEventListener("afterprint", () => { dataset.theme = theme; }, { once: true });
+  dataset.theme = "light";
+});
 
 // The theme restores the scroll position of the contents from the page before; show the entry of this page.
 {
   const entry = document.querySelector(".bd-sidebar-primary li.current > a.current");
   const side = entry?.closest(".bd-sidebar-primary");
-  const show = () => {
+  if (entry) addEventListener("load", () => {
     const [box, line] = [side.getBoundingClientRect(), entry.getBoundingClientRect()];
     if (line.top < box.top || line.bottom > Math.min(box.bottom, innerHeight)) side.scrollTop += line.top - box.top - side.clientHeight / 3;
-  };
-  if (entry) addEventListener("load", show);
+  });
 }
 
 // Load the search when its field is focused, and the lecture when it starts. No single key does either, as dictation,
