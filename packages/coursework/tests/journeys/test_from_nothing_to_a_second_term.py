@@ -92,12 +92,17 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     assert "handed in nothing: dan" in run("grade handed-in --out marks")
     assert "ada, first-steps: 6 of 6 points." in run("why ada first-steps")
     assert "area: wrong (This is the area of the rectangle" in run("why ben first-steps")
-    for typed, meant in (
-        ("ada first-step", "first-steps"),
-        ("ada FIRST-STEPS", "first-steps"),
-        ("ADA first-steps", "ada"),
+    for command, said in (
+        ("why ada first-step", "Did you mean 'first-steps'?"),
+        ("why ada FIRST-STEPS", "Did you mean 'first-steps'?"),
+        ("why ADA first-steps", "Did you mean 'ada'?"),
+        ("export marks --feedback solutions", "solutions is a folder. Give"),
+        (
+            "gradescope marks --assignment first-steps --out solutions",
+            "solutions is a folder. Give",
+        ),
     ):
-        assert f"Did you mean {meant!r}?" in run(f"why {typed}", fails=True)
+        assert said in run(command, fails=True) and not list(folder.glob(".half-*"))
     said = run("export marks --lms book.csv --feedback feedback.zip")
     assert "4 marks filled in" in said and "3 pages of feedback" in said
     # A corrected question changes marks once somebody agrees, and the next export lists the

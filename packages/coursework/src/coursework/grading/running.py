@@ -288,8 +288,11 @@ class Progress:
         self.done += 1
         if not self.told:
             self.told = True
-            kind = "WEAK isolation" if isolation.weak else "Isolation"
-            print(f"{kind}: {', '.join(isolation.layers) or 'none'}.", file=self.show)
+            print(
+                "WEAK isolation:" if isolation.weak else "Isolation:",
+                f"{', '.join(isolation.layers) or 'none'}.",
+                file=self.show,
+            )
             for line in isolation.not_stopped or ():
                 print(f"  not stopped: {line}", file=self.show)
         now = time.monotonic()

@@ -227,6 +227,9 @@ def write(
     answers or marks, and nobody else on this machine may read them.
     """
     path = Path(path)
+    if path.is_dir():
+        # The error at the end would name the half file, and leave it there with the marks.
+        raise ValueError(f"{path} is a folder. Give the name of a file.")
     path.parent.mkdir(mode=0o700 if private else 0o777, parents=True, exist_ok=True)
     half = path.with_name(f".half-{secrets.token_hex(8)}")
     with open(

@@ -327,9 +327,9 @@ class _File:
 
     def unknown(self, where: str, name: str, known: Iterable[str]) -> BadTerm:
         there = f" in {where}" if where else ""
-        listed = ", ".join(sorted(known))
         return self.bad(
-            f"{where}.{name}".strip("."), f"unknown key {name!r}{there}. The keys are {listed}."
+            f"{where}.{name}".strip("."),
+            f"unknown key {name!r}{there}. The keys are {', '.join(sorted(known))}.",
         )
 
     def of(self, kind: type[Some], what: str, where: str, value: object) -> Some:
