@@ -253,12 +253,16 @@ def _rows_of_lines(text):
 
 
 def _decimal_points(text):
-    """Replace decimal commas by points if three or more numbers have one and none a point."""
+    """Replace decimal commas by points if two or more numbers have one and none a point.
+
+    >>> _decimal_points("0,7071; 0; 0,7071; 0"), _decimal_points("1,0,0,0")
+    ('0.7071; 0; 0.7071; 0', '1,0,0,0')
+    """
     groups = re.findall(r"\d[\d,]*\d|\d", text)
     with_comma = [group for group in groups if "," in group]
     if (
         re.search(r"\d\.|\.\d", text)
-        or len(with_comma) < 3
+        or len(with_comma) < 2
         or any(group.count(",") > 1 for group in with_comma)
     ):
         return text
