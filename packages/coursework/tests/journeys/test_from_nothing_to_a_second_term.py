@@ -75,6 +75,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
         ("term new marks --roster course.toml", "lists no students"),
         ("grade handed-out --out marks", "does not exist"),
         ("merge marks handed-out.csv", "does not exist"),
+        ("term marks", "marks/term.toml: No such file or directory. Create it with"),
         ("merge marks solutions", "solutions is a folder. Give the file journal.jsonl in it."),
         ("merge marks handed-in/ada/first-steps.ipynb", "the columns student, question and words"),
         ("export marks --as-of 1.12.2026", "invalid time value: '1.12.2026'"),
@@ -96,6 +97,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
         ("why ada first-step", "Did you mean 'first-steps'?"),
         ("why ada FIRST-STEPS", "Did you mean 'first-steps'?"),
         ("why ADA first-steps", "Did you mean 'ada'?"),
+        ("export marks --lms solutions", "We cannot read solutions: Is a directory."),
         ("export marks --feedback solutions", "solutions is a folder. Give"),
         (
             "gradescope marks --assignment first-steps --out solutions",

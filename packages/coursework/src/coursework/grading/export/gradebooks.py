@@ -395,7 +395,9 @@ def _read(path: str | Path, names: Mapping[str, str]) -> Gradebook:
     try:
         return Gradebook(Path(path), names)
     except (OSError, UnicodeDecodeError) as error:
-        raise CannotExport(f"We cannot read {path}: {error}.") from None
+        raise CannotExport(
+            f"We cannot read {path}: {getattr(error, 'strerror', None) or error}."
+        ) from None
 
 
 #: The headings of the lists of students in the messages, in this order.

@@ -57,8 +57,9 @@ def secret_beside(folder: str | Path) -> bytes:
         return bytes.fromhex(path.read_text("ascii").strip())
     except (OSError, ValueError) as error:
         raise ValueError(
-            f"We cannot read or create {path} ({error}). This file holds the secret of the course, "
-            "from which grading derives some of its test inputs. It belongs beside the solutions."
+            f"We cannot read or create {path} ({getattr(error, 'strerror', None) or error}). This "
+            "file holds the secret of the course, from which grading derives some of its test "
+            "inputs. It belongs beside the solutions."
         ) from None
 
 

@@ -495,7 +495,7 @@ def read_term(path: str | Path) -> Term:
             if isinstance(error, FileNotFoundError)
             else ". Write a date as 2026-10-05T23:59:00, and put text in quotation marks."
         )
-        raise BadTerm(f"{path}: {error}{advice}") from None
+        raise BadTerm(f"{path}: {getattr(error, 'strerror', None) or error}{advice}") from None
     file = _File(path)
     if zone := said.get("time-zone"):
         try:
