@@ -20,10 +20,10 @@ export function fragmentOf(place, content) {
   return `#${place}=${ADDRESS_VERSION}.${text.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '')}`;
 }
 
-// Return the content of a fragment, { place, content }, or null for the plain name of a place. Anybody may have written
-// it, so callers must accept only what a reader could have entered. Throws an Error for the reader.
+// Return the content of a fragment, { place, content }, or null for the plain name of a place; throw an Error for the
+// reader. Callers must accept only what a reader could have entered. A full stop that messages add is ignored.
 export function carriedBy(fragment) {
-  const [, place, version, text] = /^#?([a-z0-9-]+)=(\d+)\.(.*)$/s.exec(fragment) ?? [];
+  const [, place, version, text] = /^#?([a-z0-9-]+)=(\d+)\.([\w-]*)/.exec(fragment) ?? [];
   if (place === undefined) return null;
   if (Number(version) > ADDRESS_VERSION) throw new Error(NEWER_ADDRESS);
   let content = null;
