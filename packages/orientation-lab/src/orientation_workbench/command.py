@@ -161,7 +161,9 @@ def _given(argument):
         return sys.stdin.read()
     # An argument that is not a file, or is too long to be a file's name, is the numbers themselves.
     with suppress(OSError, ValueError):
-        return Path(argument).read_text(encoding="utf-8")
+        content = Path(argument).read_bytes()
+        # Windows PowerShell writes UTF-16. Letters that are not UTF-8 do not change the numbers.
+        return content.decode("utf-16" if content[:2] == b"\xff\xfe" else "utf-8", "replace")
     if _NAME_OF_A_FILE.fullmatch(argument):
         raise ValueError(f"no such file: {argument}")
     return argument.replace("\\n", "\n")
@@ -169,13 +171,16 @@ def _given(argument):
 
 def _declared(words):
     """Return the conventions that the words declare; each word declares one."""
-    groups = {
-        choice["value"]: group["group"]
-        for groups in KINDS.values()
-        for group in groups
-        for choice in group["choices"]
-    }
-    groups |= dict.fromkeys(WAYS, "way") | dict.fromkeys(COUNTS, "kind")
+    groups = (
+        {
+            choice["value"]: group["group"]
+            for groups in KINDS.values()
+            for group in groups
+            for choice in group["choices"]
+        }
+        | dict.fromkeys(WAYS, "way")
+        | dict.fromkeys(COUNTS, "kind")
+    )
     for word in words:
         if word not in groups:
             raise ValueError(

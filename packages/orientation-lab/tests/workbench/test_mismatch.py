@@ -540,8 +540,9 @@ def test_the_command(tmp_path, capsys):
             quaternion_from_dcm(random_orientations(2, np.random.default_rng(12)))
         ),
     }
-    for name, text in files.items():
-        (tmp_path / name).write_text(text)
+    # Windows PowerShell writes UTF-16, and older programs neither that nor UTF-8.
+    for (name, text), encoding in zip(files.items(), ("utf-16", "latin-1", "utf-8"), strict=True):
+        (tmp_path / name).write_text(f"# \xb0\n{text}", encoding)
     for second, code, verdict in (
         ("here", 0, "same"),
         ("there", 1, "named"),
