@@ -127,9 +127,11 @@ class Course:
         stems = sorted(
             {stem for assignment in assignments for stem in self.assignments[assignment]}
         )
-        secret = secret_beside(self.folder)
         questions = marking.load_questions(
-            [self.sources[stem] for stem in stems], results, secret, self.edition
+            [self.sources[stem] for stem in stems],
+            results,
+            secret_beside(self.folder),
+            self.edition,
         )
         return {
             assignment: {name: questions[name] for name in self.names[assignment]}

@@ -558,6 +558,7 @@ def cluster(
     keys: str, host: str | None, port: int, worker: str | None, workers: int | None
 ) -> None:
     import os
+    import socket
     from importlib.util import find_spec
 
     from .execution import cluster_keys
@@ -577,6 +578,11 @@ def cluster(
                 "coursework cluster: give the address at which workers can reach this machine, "
                 "such as --host 192.0.2.7."
             )
+        # If the address is not this machine's, or the port is taken, say so in a line. Dask would
+        # in thirty, below commands for the workers that cannot work.
+        socket.create_server(
+            (host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET
+        ).close()
         made = cluster_keys.make_keys(folder)
         command = cluster_keys.scheduler(folder, host, port)
         address = f"tls://{host}:{port}"

@@ -431,8 +431,7 @@ def main() -> None:
     if message is None:
         # The process that started it has ended.
         return
-    readable = isolation.readable_paths()
-    server = WarmParent(control, int(sys.argv[2]), message["start"], readable)
+    server = WarmParent(control, int(sys.argv[2]), message["start"], isolation.readable_paths())
     report = server.report()
     gc.collect()
     gc.freeze()
