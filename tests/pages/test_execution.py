@@ -129,7 +129,8 @@ def test_the_real_packages_are_followed():
 
 
 @pytest.mark.long
-def test_a_run_side_by_side_says_nothing_of_its_processes(tmp_path):
+def test_a_run_side_by_side_says_nothing_and_leaves_out_what_is_stored(tmp_path):
+    """A notebook whose code changed after `make notebooks` is run."""
     program = """
 import sys
 from types import SimpleNamespace
@@ -140,15 +141,31 @@ config = SimpleNamespace(
     execution_mode="cache", execution_cache_path=folder, execution_timeout=60
 )
 run_side_by_side(None, SimpleNamespace(mystnb_config=config, doc2path=str), paths)
-assert len(get_cache(folder).list_cache_records()) == 2
+cache = get_cache(folder)
+runs = [cache.get_cache_bundle(record.pk).nb.cells[0] for record in cache.list_cache_records()]
+print(sorted(f"{run.source} is {run.outputs[0].data['text/plain']}" for run in runs))
 """
     about = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
-    paths = [tmp_path / name for name in ("one.ipynb", "two.ipynb", "copy of one.ipynb")]
-    for path, code in zip(paths, ("1 + 1", "2 + 2", "1 + 1"), strict=True):
-        nbformat.write(new_notebook(cells=[new_code_cell(code)], metadata=about), path)
-    command = [sys.executable, "-c", program, tmp_path / "cache", *paths]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
+    paths = [tmp_path / f"{number}.ipynb" for number in range(5)]
+    for path, code, ran in zip(
+        paths,
+        ("1 + 1", "2 + 2", "1 + 1", "3 + 3", "4 + 4"),
+        ("", "", "", "3 + 3", "3 + 3"),
+        strict=True,
+    ):
+        made_with = used.fingerprint_of_run(new_notebook(cells=[new_code_cell(ran)]))
+        book = new_notebook(
+            cells=[code_cell(code, text="stored")], metadata=about | {used.MADE_WITH: made_with}
+        )
+        nbformat.write(book, path)
+    done = subprocess.run(
+        [sys.executable, "-c", program, tmp_path / "cache", *paths], capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr, done.stdout) == (
+        0,
+        "",
+        "['1 + 1 is 2', '2 + 2 is 4', '3 + 3 is stored', '4 + 4 is 8']\n",
+    )
 
 
 def test_old_runs_are_thrown_away(packages, tmp_path):
@@ -182,11 +199,13 @@ def test_old_runs_are_thrown_away(packages, tmp_path):
 
 
 def code_cell(code, *tags, text=None, ran=True):
-    outputs = (
-        [new_output("execute_result", {"text/plain": text}, execution_count=1)] if text else []
-    )
     return new_code_cell(
-        code, outputs=outputs, execution_count=1 if ran else None, metadata={"tags": list(tags)}
+        code,
+        outputs=(
+            [new_output("execute_result", {"text/plain": text}, execution_count=1)] if text else []
+        ),
+        execution_count=1 if ran else None,
+        metadata={"tags": list(tags)},
     )
 
 

@@ -1,5 +1,6 @@
 """Run the notebooks in parallel, and again when their code or anything that they use changes.
 
+A notebook that ``make notebooks`` has stored is not run as long as both are what they were then.
 The key of jupyter-cache is the code in the cells, so it does not notice a change in
 ``src/orientation`` and would keep every stored output. We therefore delete a run when the files
 that the notebook uses have changed since. A changed sentence runs nothing.
@@ -14,7 +15,7 @@ from jupyter_cache.executors.basic import ExecutionWorkerLocalMProc, JupyterExec
 from jupyter_cache.executors.utils import single_nb_execution
 
 from .paths import WEBSITE, fingerprint
-from .used import fingerprint_of_used, notebook_of
+from .used import MADE_WITH, fingerprint_of_run, fingerprint_of_used, notebook_of
 from .warm_kernels import WarmAsyncKernelManager
 
 # These notebooks are shown as they were released, and the tests run them; see ``execute`` in
@@ -85,10 +86,9 @@ class Executor(JupyterExecutorLocalMproc):
     _EXECUTION_WORKER = Worker
 
     def __init__(self, cache):
-        logger = logging.getLogger(__name__)
         # Ignore messages about the start and end of a process.
-        logger.setLevel(logging.WARNING)
-        super().__init__(cache, logger)
+        logging.getLogger(__name__).setLevel(logging.WARNING)
+        super().__init__(cache, logging.getLogger(__name__))
 
 
 def run_side_by_side(app, env, docnames):
@@ -102,8 +102,11 @@ def run_side_by_side(app, env, docnames):
         if path.endswith(".ipynb"):
             record = cache.add_nb_to_project(path)
             if cache.get_cached_project_nb(record.uri) is None:
-                _, key = cache.create_hashed_notebook(cache.get_project_notebook(path).nb)
-                records[key] = record
+                notebook = cache.get_project_notebook(path).nb
+                if notebook.metadata.get(MADE_WITH) == fingerprint_of_run(notebook):
+                    cache.cache_notebook_file(path)
+                else:
+                    records[cache.create_hashed_notebook(notebook)[1]] = record
     if len(records) > 1:
         # Cells that fail are not cached: MyST-NB runs them again and reports the failure.
         Executor(cache).run_and_cache(

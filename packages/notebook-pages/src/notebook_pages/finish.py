@@ -52,22 +52,16 @@ def pages_of(site):
 
 def policy(text, elsewhere):
     """Return the policy of the page ``text``, whose Python may fetch from ``elsewhere``."""
-    scripts = [
-        match[1] for match in INLINE.finditer(text) if "src=" not in match[0].partition(">")[0]
-    ]
-    data = [
-        match[1]
-        for match in INLINE.finditer(text)
-        if 'type="application/' in match[0].partition(">")[0]
-    ]
     digests = {
-        base64.b64encode(sha256(script.encode()).digest()).decode()
-        for script in scripts
-        if script not in data
+        base64.b64encode(sha256(script[1].encode()).digest()).decode()
+        for script in INLINE.finditer(text)
+        if not re.search('src=|type="application/', script[0].partition(">")[0])
     }
-    rules = {**POLICY, "connect-src": " ".join([POLICY["connect-src"], *elsewhere])}
-    rules["script-src"] += "".join(f" 'sha256-{digest}'" for digest in sorted(digests))
-    return "; ".join(f"{name} {value}" for name, value in rules.items())
+    more = {
+        "connect-src": elsewhere,
+        "script-src": [f"'sha256-{digest}'" for digest in sorted(digests)],
+    }
+    return "; ".join(" ".join([name, POLICY[name], *more.get(name, [])]) for name in POLICY)
 
 
 def write(site):
@@ -78,9 +72,12 @@ def write(site):
     (listed,) = (site / FOLDER).glob(f"lock-*/{LOCK}")
     lock = json.loads(listed.read_text("utf8"))
     variants = " ".join(sorted(folder.name for folder in (site / FOLDER).glob("sealed-*")))
-    addresses = [package["file_name"] for package in lock["packages"].values()]
     elsewhere = sorted(
-        {"/".join(address.split("/")[:3]) for address in addresses if "://" in address}
+        {
+            "/".join(package["file_name"].split("/")[:3])
+            for package in lock["packages"].values()
+            if "://" in package["file_name"]
+        }
     )
     for page in pages_of(site):
         before = page.read_text("utf8")

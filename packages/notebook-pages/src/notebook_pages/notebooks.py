@@ -13,6 +13,7 @@ from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 
 from .moving import WIDGET
+from .used import MADE_WITH, fingerprint_of_run
 
 PLACES = ("*.ipynb", "chapters/*.ipynb", "appendix/*.ipynb")
 METADATA = {
@@ -29,7 +30,9 @@ def all_notebooks(book):
 
 def normalise(notebook):
     """Keep only the metadata that the book uses, and name the cells by their position."""
-    notebook.metadata = nbformat.from_dict(METADATA)
+    notebook.metadata = nbformat.from_dict(
+        {key: value for key, value in notebook.metadata.items() if key == MADE_WITH} | METADATA
+    )
     notebook.nbformat, notebook.nbformat_minor = 4, 5
     for position, cell in enumerate(notebook.cells):
         cell["id"] = f"cell-{position}"
@@ -57,7 +60,8 @@ def run(path):
         client.execute()
     except CellExecutionError as error:
         return f"{path}: {error}"
-    nbformat.validate(normalise(notebook))
+    normalise(notebook).metadata[MADE_WITH] = fingerprint_of_run(notebook)
+    nbformat.validate(notebook)
     nbformat.write(notebook, path)
     print(f"ran {path}", flush=True)
     return None

@@ -37,20 +37,23 @@ def of_sources() -> str:
     roots = dict.fromkeys((Path.cwd(), REPOSITORY))
     files = [path for root in roots for path in sources(root)]
     files += [path for root in roots for name in SET_UP if (path := root / name).is_file()]
-    facts = [
-        f"{path} {about.st_size} {about.st_mtime_ns}" for path in files for about in (path.stat(),)
-    ]
-    facts += [
+    settings = [
         f"{name}={value}"
         for name, value in os.environ.items()
         if name.startswith(("BOOK_", "SOURCE_DATE_"))
     ]
+    # The version of the students' package depends on the commit.
     commit = subprocess.run(
         ["git", "-C", REPOSITORY, "rev-parse", "HEAD"], capture_output=True, text=True
     )
-    # The version of the students' package depends on the commit.
-    facts += [sys.version, commit.stdout]
-    return fingerprint(facts)
+    return fingerprint(
+        [
+            *(f"{path} {(about := path.stat()).st_size} {about.st_mtime_ns}" for path in files),
+            *settings,
+            sys.version,
+            commit.stdout,
+        ]
+    )
 
 
 def of_site() -> str:

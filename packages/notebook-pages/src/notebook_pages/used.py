@@ -25,6 +25,8 @@ PLUGIN = REGISTERED.get("plugin", "")
 SEALED = PACKAGES.get(PLUGIN, REPOSITORY) / "sealed"
 # The versions of everything else that is imported.
 PINS = REPOSITORY / "constraints.txt"
+#: In a notebook's metadata: what its stored outputs come from, see `fingerprint_of_run`.
+MADE_WITH = "made_with"
 _PARSING = threading.Lock()
 
 
@@ -116,8 +118,7 @@ def files_used(code: str) -> list[Path]:
     files = {file for module in modules if (file := file_of(module))} | (
         {PINS} if PINS.is_file() else set()
     )
-    for folder in {path.parent for path in files if path != PINS} - {SEALED.parent}:
-        files |= beside(folder)
+    files.update(*map(beside, {path.parent for path in files if path != PINS} - {SEALED.parent}))
     files -= set(SEALED.glob("*"))
     if "coursework" in modules:
         files |= {
@@ -155,9 +156,15 @@ def fingerprint_of_used(notebook: "NotebookNode") -> str:
 
     The cells themselves are not included.
     """
-    code = "\n".join(code_of(notebook))
-    parts = [f"{path.relative_to(REPOSITORY)} {_digest(path).hex()}" for path in files_used(code)]
+    files = files_used("\n".join(code_of(notebook)))
+    parts = (f"{path.relative_to(REPOSITORY)} {_digest(path).hex()}" for path in files)
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
+
+
+def fingerprint_of_run(notebook: "NotebookNode") -> str:
+    """Return a text that changes when the cells of ``notebook``, or anything they use, change."""
+    code = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    return hashlib.sha256("\0".join([fingerprint_of_used(notebook), *code]).encode()).hexdigest()
 
 
 def notebook_of(path: str | Path) -> "NotebookNode":
