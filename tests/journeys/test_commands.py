@@ -45,6 +45,13 @@ def test_a_reader_that_has_seen_enough_gets_no_traceback(command, unbuffered):
             "recording --quick -",
             "which columns come from which sensor",
         ),
+        # A terminal without the sign for degrees.
+        (
+            "export PYTHONIOENCODING=ascii; (echo t_s,gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g; "
+            "seq -f '%g,0.1,0.2,0.1,0,0,1' 0 0.01 3)",
+            "recording --quick -",
+            r"unit of the gyroscope: \xb0/s according to its heading",
+        ),
     ],
 )
 def test_a_dash_stands_for_what_another_command_prints(numbers, command, words):

@@ -2,6 +2,7 @@
 
 import argparse
 import atexit
+import io
 import os
 import signal
 import sys
@@ -20,8 +21,10 @@ as well as coursework-checks."""
 
 
 @contextmanager
-def _readers_may_leave() -> Iterator[None]:
-    """Let a reader of the output, such as `head`, stop when it has seen enough."""
+def _output_suits_its_reader() -> Iterator[None]:
+    """Let a reader, such as `head`, stop early. Letters that a terminal lacks become `\\u0141`."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         try:
             yield
@@ -33,7 +36,7 @@ def _readers_may_leave() -> Iterator[None]:
         sys.exit(1)
 
 
-@_readers_may_leave()
+@_output_suits_its_reader()
 def main(arguments: Sequence[str] | None = None) -> None:
     rooms = [
         import_module(f"coursework.{room}.commands")

@@ -35,6 +35,9 @@ class _Parser(argparse.ArgumentParser):
 
 
 def main(arguments=None):
+    if arguments is None:
+        # A terminal may lack letters such as µ.
+        sys.stdout.reconfigure(errors="backslashreplace")
     if arguments is None and hasattr(signal, "SIGPIPE"):
         # A program that reads the output, such as `head`, may stop early.
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)

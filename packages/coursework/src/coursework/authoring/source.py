@@ -257,8 +257,7 @@ class _Recorder:
     ) -> Given:
         """Draw the parameters of this variant; a question with fewer variants has its first."""
         rule = Rule(name, count, pools, where, picture).without_what_is_ruled_out()
-        number = self.variant if self.variant < rule.count else 0
-        given = rule.parameters(number, self.edition)
+        given = rule.parameters(self.variant if self.variant < rule.count else 0, self.edition)
         self.rules[name], self.given[name] = rule, given
         return Given(shown(self.texts[name], written(given)), given)
 

@@ -332,8 +332,7 @@ MINUS = str.maketrans("\u2212\u2010\u2011\u2013", "----")
 
 def one_sign(question: Question, numbers: list[Number]) -> list[Number]:
     # Of two opposites, use the one whose first nonzero component is positive.
-    limit = sign_limit(question)
-    leading = next((number for number in numbers if abs(number) > limit), MP.one)
+    leading = next((number for number in numbers if abs(number) > sign_limit(question)), MP.one)
     return numbers if leading > 0 or not question.either_sign else [-number for number in numbers]
 
 

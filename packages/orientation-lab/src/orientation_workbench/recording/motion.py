@@ -146,8 +146,7 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
     -------
     list of Stretch
     """
-    step = np.median(np.diff(time))
-    size = max(12, round(seconds / step))
+    size = max(12, round(seconds / np.median(np.diff(time))))
     count = len(time) // size
     if count < 1:
         return []
@@ -471,8 +470,7 @@ def readings(
         [np.interp(orientation_time[places], time, path[:, k]) for k in range(3)], axis=-1
     )
     measured = np.diff(at, axis=0)
-    turns = np.linalg.norm(measured, axis=1)
-    use = turns < 1.0
+    use = np.linalg.norm(measured, axis=1) < 1.0
     if len(places) < 10 or np.sqrt((measured[use] ** 2).sum()) < 0.05:
         return []
     whole = (measured[use] ** 2).sum()
