@@ -22,10 +22,12 @@ from .numbers_and_symbols import (
     WrongShape,
     as_list,
     is_symbolic,
+    narrow_type,
     number_array,
     number_tuples,
     one_item,
     symbol_components,
+    tolerance_of,
 )
 from .quaternions import demand_unit_length, product_components
 from .random_points import Names, Point, at_random_points, points_for, put_in, unknowns
@@ -109,7 +111,7 @@ def _columns_match(
     return all((abs(a - b) <= tolerance).all() for a, b in zip(firsts, seconds))
 
 
-def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE) -> bool:
+def same_orientation(first: Values, second: Values, tolerance: float | None = None) -> bool:
     """Check whether two direction cosine matrices, or two quaternions, are the same orientation.
 
     Symbols are compared by name, so that ``theta`` with and without assumptions, or as a function
@@ -119,8 +121,9 @@ def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE
     ----------
     first, second : SymPy matrices or arrays
         Both of shape ``(..., 3, 3)``, or both ``(4,)`` or ``(..., 4)``.
-    tolerance : float
-        Largest difference between two entries that counts as rounding.
+    tolerance : float, optional
+        Largest difference between two entries that counts as rounding: ``1e-9``, or ``4e-6`` if one
+        is in single precision.
 
     Returns
     -------
@@ -141,6 +144,7 @@ def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE
     True
     """
     first_components, second_components = _read_both(first, second, "first", "second")
+    tolerance = tolerance_of(narrow_type((first, second))) if tolerance is None else tolerance
     if _is_one(first_components) and _is_one(second_components):
         return all(
             _match(first, second, tolerance)
@@ -180,7 +184,7 @@ def diagnose(
     expected: Values,
     angles: Values | None = None,
     sequence: str | None = None,
-    tolerance: float = TOLERANCE,
+    tolerance: float | None = None,
 ) -> Diagnosis:
     """Check whether an orientation is the expected one, and find the mix-up if it is not.
 
@@ -194,10 +198,10 @@ def diagnose(
     angles, sequence : optional
         The Euler angles and the body fixed sequence of ``expected``. For a symbolic matrix of up to
         three angles they are recognised without being given.
-    tolerance : float
-        Largest difference between two entries that counts as rounding. Numbers from a file need
-        more than the rounding of a computation: half a unit of their last printed digit, and what
-        follows from it.
+    tolerance : float, optional
+        Largest difference between two entries that counts as rounding, by default as for
+        `same_orientation`. Numbers from a file need more than the rounding of a computation: half a
+        unit of their last printed digit, and what follows from it.
 
     Returns
     -------
@@ -222,6 +226,7 @@ def diagnose(
     ('the matrices are multiplied in reverse order, which gives space fixed rotations',)
     """
     answer, truth = _read_both(given, expected, "given", "expected")
+    tolerance = tolerance_of(narrow_type((given, expected))) if tolerance is None else tolerance
     if not (_is_one(answer) and _is_one(truth)):
         raise ValueError("diagnose takes one answer at a time, not a batch")
     if (angles is None) != (sequence is None):

@@ -245,8 +245,7 @@ class Frames:
                 f"no orientation connects {frame} and {reference} directly; the path is "
                 f"{self.path(frame, reference)}"
             )
-        pair = {frame, reference}
-        left = (edge for edge in self._edges if {edge.frame, edge.reference} != pair)
+        left = (edge for edge in self._edges if {edge.frame, edge.reference} != {frame, reference})
         return functools.reduce(Frames._and, left, Frames())
 
     def subs(self, values: Mapping[Symbolic, object]) -> Frames:

@@ -15,7 +15,7 @@ import functools
 import math
 import numbers
 import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias, TypeGuard, TypeVar, overload
 
 if TYPE_CHECKING:
@@ -43,7 +43,9 @@ Nested: TypeAlias = "float | tuple[Nested, ...]"
 
 # The largest deviation from orthogonality, or from unit length, that counts as rounding.
 TOLERANCE = 1e-9
-# The same for numbers of a narrower type, in units in their last place.
+# The types that are narrower than a float, narrowest first, with the distance from 1 to the next
+# number, and the largest deviation of their numbers in units of it.
+PRECISIONS = {"float16": 2.0**-10, "float32": 2.0**-23}
 ROUNDINGS = 32
 
 #: Number of items of a batch to work on together. Their components then stay in the cache, and the
@@ -235,12 +237,8 @@ def _evaluate_what_is_read(
             return value.slopes_of(formula, shape, arguments, guard)
     single = [one_item(value, item, name) for name, value, item in arguments]
     items = [entries for entries in single if entries is not None]
-    kind = _narrow_type(arguments, guard) if guard else None
-    tolerance = TOLERANCE
-    if kind:
-        from numpy import finfo
-
-        tolerance = ROUNDINGS * float(finfo(kind).eps)
+    kind = narrow_type(_guarded(arguments, guard)) if guard else None
+    tolerance = tolerance_of(kind)
     result: Scalars
     if len(items) == len(single):
         entries = [entry for entries in items for entry in entries]
@@ -252,18 +250,27 @@ def _evaluate_what_is_read(
     return result.astype(kind) if kind and hasattr(result, "astype") else result
 
 
-def _narrow_type(arguments: Sequence[Argument], guard: Guard) -> str | None:
-    """Return the narrowest type, of NumPy or another library, of the guarded arguments.
+def _guarded(arguments: Sequence[Argument], guard: Guard) -> Iterator[object]:
+    """Iterate over the guarded arguments.
 
     Other arguments are taken as exact, however few digits they have.
     """
-    names: list[str] = []
     size = 0
     for _, value, item in arguments:
         if guard.size is None or size < guard.size:
-            names.append(str(getattr(value, "dtype", "")).rpartition(".")[2])
+            yield value
         size += math.prod(item)
-    return next((kind for kind in ("float16", "float32") if kind in names), None)
+
+
+def narrow_type(values: Iterable[object]) -> str | None:
+    """Return the narrowest type, of NumPy or another library, that is narrower than a float."""
+    names = [str(getattr(value, "dtype", "")).rpartition(".")[2] for value in values]
+    return next((kind for kind in PRECISIONS if kind in names), None)
+
+
+def tolerance_of(kind: str | None) -> float:
+    """Return what counts as rounding in numbers of a `narrow_type`, or in floats."""
+    return ROUNDINGS * PRECISIONS[kind] if kind else TOLERANCE
 
 
 def _evaluate_symbols(

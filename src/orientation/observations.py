@@ -158,8 +158,7 @@ def dcm_from_directions(
     # orientation fits as well, as a fraction of what these weights allow. Beside a star tracker, a
     # magnetometer has a millionth of the weight, but it still determines the rotation about the
     # star.
-    allowed = weights.sum() - weights.max()
-    margin = gap / max(allowed, sys.float_info.min)
+    margin = gap / max(weights.sum() - weights.max(), sys.float_info.min)
     if not numpy.all((margin > PARALLEL) & (gap > ROUNDING * scales[..., 0])):
         raise ValueError(
             f"the directions do not determine an orientation (margin {numpy.min(margin):.1e}): "

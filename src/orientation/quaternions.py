@@ -329,8 +329,7 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Arr
         k: Number,
         share: Number,
     ) -> Sequence[Number]:
-        dot = _dot((a, b, c, d), (e, g, h, k))
-        sign = f.where(dot < 0, -1.0, 1.0)
+        sign = f.where(_dot((a, b, c, d), (e, g, h, k)) < 0, -1.0, 1.0)
         e, g, h, k = sign * e, sign * g, sign * h, sign * k
         # Half the sum and half the difference give the angle without the loss of an inverse cosine.
         angle = 2 * f.atan2(f.norm(e - a, g - b, h - c, k - d), f.norm(e + a, g + b, h + c, k + d))

@@ -47,8 +47,9 @@ def test_a_reader_that_has_seen_enough_gets_no_traceback(command, unbuffered):
         ),
         # A terminal without the sign for degrees.
         (
-            "export PYTHONIOENCODING=ascii; (echo t_s,gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g; "
-            "seq -f '%g,0.1,0.2,0.1,0,0,1' 0 0.01 3)",
+            "export PYTHONIOENCODING=ascii; (echo t_s,gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g; awk "
+            """'BEGIN { OFS = ","; for (k = 0; k < 300; k++) """
+            """print k / 100, sin(k), sin(2 * k), sin(3 * k), 0, 0, 1 + sin(5 * k) / 500 }')""",
             "recording --quick -",
             r"unit of the gyroscope: \xb0/s according to its heading",
         ),

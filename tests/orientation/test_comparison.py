@@ -601,6 +601,5 @@ def test_a_tolerance_holds_for_everything_that_is_asked():
         diagnosis.causes
         == diagnose(composed(NUMBERS[::-1], "yxz"), composed(NUMBERS, "zxy"), NUMBERS, "zxy").causes
     )
-    unrelated = np.round(random_dcms(1, seed=4)[0], 4)
-    assert diagnose(unrelated, right, tolerance=2e-3).causes == ()
+    assert diagnose(np.round(random_dcms(1, seed=4)[0], 4), right, tolerance=2e-3).causes == ()
     assert diagnose(right * 1.1, right, tolerance=2e-3).causes[0].startswith("it")

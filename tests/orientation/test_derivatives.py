@@ -117,8 +117,7 @@ def test_a_covariance_is_that_of_throws():
     dcm = o.dcm_from_body_fixed((0.4, 0.9, -0.7), "zyx")
     root = rng.normal(size=(3, 3)) * 0.003
     for along in ("target", "source"):
-        turns = rng.normal(size=(40_000, 3)) @ root.T
-        small = o.dcm_from_rotation_vector(turns)
+        small = o.dcm_from_rotation_vector(rng.normal(size=(40_000, 3)) @ root.T)
         thrown = small @ dcm if along == "target" else dcm @ small
         angles = o.body_fixed_from_dcm(thrown, "zyx")
         expected = o.propagate_covariance(

@@ -229,8 +229,7 @@ def test_a_smoother_is_the_least_squares_of_all_that_was_seen():
     A = np.array(rows)
     covariance = np.linalg.inv(A.T @ A)
     best = covariance @ A.T @ np.array(values)
-    angles = rotation_vector_from_dcm(smoothed.dcm)[:, 2]
-    np.testing.assert_allclose(angles, best[::2], atol=1e-9)
+    np.testing.assert_allclose(rotation_vector_from_dcm(smoothed.dcm)[:, 2], best[::2], atol=1e-9)
     np.testing.assert_allclose(smoothed.bias[:, 2], best[1::2], atol=1e-8)
     for k, place in ((2, 0), (5, 1)):
         variances = np.diag(covariance)[place::2]

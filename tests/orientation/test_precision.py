@@ -29,8 +29,9 @@ def test_single_precision_stays_itself_and_is_accepted(batch):
     back = o.dcm_from_quaternion(quaternion)
     assert quaternion.dtype == back.dtype == np.float32
     np.testing.assert_allclose(back, dcm, atol=3e-7)
-    angles = o.body_fixed_from_dcm(back, "zxy")
-    np.testing.assert_allclose(angles, np.broadcast_to((0.1, 0.2, 0.3), angles.shape), atol=1e-6)
+    assert o.same_orientation(back, np.broadcast_to(DCM, back.shape))
+    expected = np.broadcast_to((0.1, 0.2, 0.3), (*batch, 3))
+    np.testing.assert_allclose(o.body_fixed_from_dcm(back, "zxy"), expected, atol=1e-6)
 
 
 def test_single_precision_is_held_to_its_own_digits():
@@ -40,6 +41,8 @@ def test_single_precision_is_held_to_its_own_digits():
     with pytest.raises(ValueError, match="Were its entries rounded or measured"):
         o.check_dcm(DCM.astype(np.float32).astype(float))
     o.check_dcm(o.nearest_dcm(DCM.astype(np.float32)).dcm)
+    assert not o.same_orientation((DCM * 1.00001).astype(np.float32), DCM)
+    assert o.diagnose(DCM.astype(np.float32), DCM).same
 
 
 def test_tables_are_read_as_arrays_are():
