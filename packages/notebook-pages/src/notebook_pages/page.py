@@ -279,11 +279,9 @@ def join_scripts(site):
             "The theme's script no longer finds the scrolling boxes with the code "
             "that page.py replaces"
         )
-    # The theme lays out the page at once, and a long page has many buttons for copying. In tasks of
-    # their own they do not hold up a reader who touches the page meanwhile.
-    buttons = static / "copybutton.js"
-    for path, script in ((buttons, buttons.read_text("utf8")), (theme, text)):
-        path.write_text(f"setTimeout(() => {{\n{script}\n}})", "utf8")
+    # The theme lays out the page at once. In a task of its own it does not hold up a reader who
+    # touches the page meanwhile.
+    theme.write_text(f"setTimeout(() => {{\n{text}\n}})", "utf8")
     begin = take_later(site, static / STYLE)
     files = {name for page in pages_of(site) for name in JOINED.findall(page.read_text("utf8"))}
     for file in files:
