@@ -300,7 +300,11 @@ def test_the_text_moves_the_gimbal_and_the_reader_may_take_it(open_essay):
     # Even without motion, the scene shows its outcome only when the reader has read on.
     scroll_to(page, "same-numbers")
     assert camera(page) == pytest.approx(np.eye(3))
-    page.evaluate("scrollBy(0, document.getElementById('same-numbers').offsetHeight / 2)")
+    # The page hears of the scrolling in its next frame.
+    page.evaluate(
+        "scrollBy(0, document.getElementById('same-numbers').offsetHeight / 2); "
+        "new Promise((drawn) => requestAnimationFrame(() => setTimeout(drawn)))"
+    )
     rest(page)
     assert np.degrees(body_fixed_from_dcm(camera(page), "zxy")) == pytest.approx(
         (35, 50, 65), abs=0.2
