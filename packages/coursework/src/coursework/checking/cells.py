@@ -32,13 +32,13 @@ CHANGED = (
 # words and, on the lines below them, the cell's code. The last pattern needs no error: Python
 # accepts `student = 'jdoe'`, which leaves the student with the numbers that earn nothing.
 ADVICE = {
-    r"could_extract_minus_sign|FunctionClass": (
+    r"\A.*(could_extract_minus_sign|FunctionClass)": (
         "A function of SymPy stands where an expression is needed: perhaps its parentheses are "
         "missing, as in `sm.cos*2`. Or has a cell run `from sympy import *`? It replaces the "
         "symbols `beta`, `gamma` and `zeta` by functions. Then remove that line, run the cell that "
         "creates the symbols, and run this cell again.\n"
     ),
-    r"Cannot convert expression to float|ufunc does not support .* type (?!Function)": (
+    r"\A.*(Cannot convert expression to float|ufunc does not support .* type (?!Function))": (
         "Functions of `math` and NumPy take numbers only. For an expression with symbols, use "
         "those of SymPy, such as `sm.cos`, or substitute numbers for its symbols first.\n"
     ),
@@ -47,7 +47,7 @@ ADVICE = {
         "one. Type it on the keyboard instead: `-`, `*`, a space, straight quotation marks.\n"
     ),
     r"(?sm)^name '(\w+)' is not defined.*\bstudent\(\s*\1\b"
-    r"|^(leading zeros|invalid (syntax|decimal)).*\bstudent\(\s*\w|^\s*student\s*=": (
+    r"|^(leading zeros|invalid (syntax|decimal)).*\bstudent\(\s*\w|^\s*student\s*=(?!=)": (
         "Give your ID in parentheses and quotation marks, as in `student('jdoe')`. Then run this "
         "cell again.\n"
     ),

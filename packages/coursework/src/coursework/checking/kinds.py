@@ -332,7 +332,8 @@ MINUS = str.maketrans("\u2212\u2010\u2011\u2013", "----")
 
 def one_sign(question: Question, numbers: list[Number]) -> list[Number]:
     # Of two opposites, use the one whose first nonzero component is positive.
-    leading = next((number for number in numbers if abs(number) > sign_limit(question)), MP.one)
+    limit = sign_limit(question)
+    leading = next((number for number in numbers if abs(number) > limit), MP.one)
     return numbers if leading > 0 or not question.either_sign else [-number for number in numbers]
 
 

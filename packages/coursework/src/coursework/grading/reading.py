@@ -69,7 +69,8 @@ def _default(field: Field[Any]) -> object:
 
 @functools.cache
 def _readers(kind: type) -> list[tuple[Field[Any], Reader[Any]]]:
-    return [(field, _reader(get_type_hints(kind)[field.name])) for field in fields(kind)]
+    types = get_type_hints(kind)
+    return [(field, _reader(types[field.name])) for field in fields(kind)]
 
 
 def _reader(kind: Any) -> Reader[Any]:

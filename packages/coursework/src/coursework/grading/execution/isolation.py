@@ -330,8 +330,7 @@ def drop_privileges(user: int) -> None:
         os.setgroups([])
         os.setresgid(user, user, user)
         os.setresuid(user, user, user)
-    header = struct.pack("=Ii", 0x20080522, 0)
-    _call("capset", _library.capset(header, b"\0" * 24))
+    _call("capset", _library.capset(struct.pack("=Ii", 0x20080522, 0), b"\0" * 24))
     forbid_new_privileges()
     # No other process of this user may look into this one, and a crash handler, perhaps run as
     # root, must not receive its memory. The limit of core files alone does not stop a handler.

@@ -375,8 +375,7 @@ def with_decisions(record: Record, standing: Standing) -> Record:
                 decided={"who": decided.who, "when": decided.when, "id": decided.id},
             )
         appeals = standing.appeals.get((record.student, record.assignment, name), ())
-        told = tuple(appeal.as_json() for appeal in appeals)
-        marks[name] = replace(standing_mark, appeals=told)
+        marks[name] = replace(standing_mark, appeals=tuple(appeal.as_json() for appeal in appeals))
     return replace(record, marks=marks)
 
 
