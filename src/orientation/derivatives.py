@@ -191,12 +191,14 @@ class _Numbers(Variable):
         columns = [column for rows in flat for column in rows.T]
         if guard:
             demand(guard, columns, batch)
-        components: list[Array | Dual] = []
+        components: list[Dual] = []
         for (_, value, item), rows in zip(arguments, flat):
             components += (
-                self._with_slopes(rows, item) if isinstance(value, _Numbers) else list(rows.T)
+                self._with_slopes(rows, item)
+                if isinstance(value, _Numbers)
+                else [Dual(column, numpy.zeros((1, len(column)))) for column in rows.T]
             )
-        count = max(len(entry.slopes) for entry in components if isinstance(entry, Dual))
+        count = max(len(entry.slopes) for entry in components)
         with numpy.errstate(divide="ignore", invalid="ignore"):
             # No type can express that a formula works with anything that has these operations.
             result = map(parts, formula(DualFunctions(), *components))  # type: ignore[arg-type]

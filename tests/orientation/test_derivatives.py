@@ -25,6 +25,9 @@ TO_DCM = [
     (o.dcm_from_rotation_vector, VECTOR, ()),
     (o.dcm_from_rodrigues, VECTOR, ()),
     (o.dcm_from_modified_rodrigues, VECTOR, ()),
+    # The other argument is constant.
+    (lambda axis: o.dcm_from_axis_angle(axis, 0.3), VECTOR, ()),
+    (lambda rate: o.rotation_vector_rate(VECTOR, rate), ANGLES, ()),
 ]
 
 
@@ -146,6 +149,7 @@ def test_a_lock_is_refused_and_its_neighbourhood_warned_of():
             "along must be .* not 'body'",
         ),
         (lambda: o.jacobian(o.quaternion_from_dcm, 2 * np.eye(3)), "2 times an orthogonal one"),
+        (lambda: o.jacobian(o.angular_velocity_matrix, ANGLES, "zxz"), "dcm is not orthogonal"),
         (
             lambda: o.propagate_covariance(o.quaternion_from_dcm, np.eye(3), np.eye(4)),
             r"covariance has shape \(4, 4\)",
