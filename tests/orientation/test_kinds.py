@@ -490,6 +490,7 @@ def test_what_is_no_number_is_told(function, batches):
         {"angle": 1},
         ["a", "b", "c"],
         [None, 1, 2],
+        10**400,
         object(),
     ):
         with pytest.raises(
