@@ -197,12 +197,15 @@ def test_an_answer_is_the_nearest_that_is_known(answer, expected):
 
 def test_numbers_with_fewer_places_than_count_may_be_rounded():
     vector = Question("vector", salt="s", tolerance=0.004, relative=0.001, length=2)
-    few = {0.33: ("2 decimal places", "0.004"), 1.3: ("1 decimal place", "0.005")}
+    exacting = replace(vector, tolerance=5e-13, relative=0)
     enough = (-110.33, 4.33, 7.0, 0.5, 0.333, 0.25, 1e-5)
-    few |= {10.3: ("1 decimal place", "0.01"), 0.2: ("1 decimal place", "0.004")}
-    for entry, (places, allowed) in few.items():
-        assert reply_to(vector, {}, [entry, 1])[2] == (
-            f"If you rounded, keep all digits until the end: `{entry:g}` has {places}, but an "
+    for question, entry, places, allowed in (
+        (vector, 0.33, "2 decimal places", "0.004"), (vector, 1.3, "1 decimal place", "0.005"),
+        (vector, 10.3, "1 decimal place", "0.01"), (vector, 0.2, "1 decimal place", "0.004"),
+        (exacting, 2.78188565, "8 decimal places", "5e-13"),
+    ):  # fmt: skip
+        assert reply_to(question, {}, [entry, 1])[2] == (
+            f"If you rounded, keep all digits until the end: `{entry}` has {places}, but an "
             f"answer may be off by at most {allowed}. {FORM}"
         )
     assert {reply_to(vector, {}, [entry, sm.Rational(1, 3)])[2] for entry in enough} == {ALL_WRONG}

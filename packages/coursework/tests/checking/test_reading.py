@@ -67,6 +67,8 @@ FIRST, SECOND, STRAY = ["expression", 0], ["expression", 1], ["expression", 2]
         (IN_A, A.x + 2 * N.y + 3 * A.z, [1, 2, 3]),
         (MATRIX, [[1, 2, 3], [4, 5, 6]], [1, 2, 3, 4, 5, 6]),
         (MATRIX, sm.Matrix([[1, 2, 3], [4, 5, 6]]), [1, 2, 3, 4, 5, 6]),
+        (MATRIX, [[[1, 2, 3], [4, 5, 6]]], [1, 2, 3, 4, 5, 6]),
+        (MATRIX, [sm.Matrix([[1, 2, 3], [4, 5, 6]])], [1, 2, 3, 4, 5, 6]),
         (
             MATRIX,
             [[[1, 2, 3]], [[4, 5, 6]]],
@@ -126,7 +128,7 @@ ROWS = "a list of rows, one of which has"
         (
             VECTOR,
             [1, 2, "3"],
-            "a list in which one entry is a string; write numbers without quotation marks",
+            "a list that contains a string; write numbers without quotation marks",
         ),
         (VECTOR, [1, ..., 3], "a list with blanks"),
         (VECTOR, [1, [..., ...], 3], "a list with blanks"),
@@ -143,10 +145,10 @@ ROWS = "a list of rows, one of which has"
         (
             MATRIX,
             [[1, 2, 3], [4, "5", 6]],
-            "a list in which one entry is a string; write numbers without quotation marks",
+            "a list that contains a string; write numbers without quotation marks",
         ),
         (MATRIX, [[1, 2, 3], 4], "a list with 2 entries, one of which is a single expression"),
-        (MATRIX, [[1, 2, 3], "4"], "a list in which one entry is a string"),
+        (MATRIX, [[1, 2, 3], "4"], "a list that contains a string"),
         (
             MATRIX,
             [[1, 2, 3], sm.eye(2)],
@@ -161,7 +163,7 @@ ROWS = "a list of rows, one of which has"
         (TRUTHS, True, "a Boolean"),
         (TRUTHS, [True, False], "a list with 2 entries"),
         (TRUTHS, [True, False, 2], "a list with 3 entries, one of which is a single expression"),
-        (TRUTHS, [True, False, "yes"], "a list in which one entry is a string"),
+        (TRUTHS, [True, False, "yes"], "a list that contains a string"),
         (TRUTHS, [True, False, ...], "a list with blanks"),
         (ORDER, "abc", "a string"),
         (ORDER, ["a", "b"], "a list with 2 entries"),

@@ -324,6 +324,7 @@ def test_the_reply_names_what_is_wrong(answer, note, words):
         ("a sequence", "zzx", "impossible sequence"),
         ("a sequence", "abc", "shape"),
         ("axis and angle", ([2, 1, -2], sm.pi / 4), "not unit length"),
+        ("axis and angle", ([2, 1, -2], sm.pi / 8), "not unit length"),
         (
             "axis and angle",
             ([sm.Rational(-2, 3), sm.Rational(-1, 3), sm.Rational(-2, 3)], sm.pi / 4),

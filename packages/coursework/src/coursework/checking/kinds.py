@@ -109,7 +109,7 @@ def _holding(whole: Value, part: Value) -> str:
     if is_blank(part):
         return "a list with blanks"
     if part[0] == "text":
-        return "a list in which one entry is a string"
+        return "a list that contains a string"
     return f"a list with {len(parts_of(whole))} entries, one of which is {_describe(part)}"
 
 
@@ -191,8 +191,15 @@ def _vector(question: Question, value: Value) -> list[int]:
 def row_entries(value: Value, rows: int, columns: int, expected: str) -> list[int]:
     if value[0] == "matrix" and value[1:3] == [rows, columns]:
         return entries_of(value)
-    if value[0] == "list" and len(parts_of(value)) == rows:
-        return [entry for row in parts_of(value) for entry in _row(value, row, columns, expected)]
+    parts = parts_of(value) if value[0] == "list" else []
+    if len(parts) == rows:
+        return [entry for row in parts for entry in _row(value, row, columns, expected)]
+    # A function for stacks returns a stack of one, whose rows are lists.
+    if len(parts) == 1 and (
+        parts[0][0] == "matrix"
+        or (parts[0][0] == "list" and all(row[0] == "list" for row in parts_of(parts[0])))
+    ):
+        return row_entries(parts[0], rows, columns, expected)
     raise _fault_of_numbers(expected, value)
 
 
@@ -266,9 +273,8 @@ def _choice(question: Question, plain: Plain, entry: str = "") -> str:
 
 def _choices(question: Question, plain: Plain) -> list[str]:
     """Return each part of a list as one of the options."""
-    nodes = plain["nodes"]
     return [
-        _choice(question, {"value": part, "nodes": nodes}, f" in entry {order}")
+        _choice(question, {"value": part, "nodes": plain["nodes"]}, f" in entry {order}")
         for order, part in enumerate(parts_of(plain["value"]), 1)
     ]
 

@@ -431,12 +431,16 @@ def _compare(
 ) -> Reply:
     locker = find(fingerprint)
     known = _known_in(question, reading, locker)
-    wrong_form = fault(question, reading) if known is None or known.outcome == "correct" else None
+    # Only the direction of an axis is compared, so its length may be wrong beside a known mistake.
+    compared = len(canonical(question, reading)) == sum(map(len, reading.numbers))
+    mistaken = known is not None and known.outcome != "correct"
+    wrong_form = None if mistaken and compared else fault(question, reading)
     if wrong_form and (known is None or wrong_form.note in ALWAYS_WRONG):
         # Rounding errors are not reported as faults of geometry.
-        stray = wrong_form.note == "stray symbol"
         explanation = (
-            "" if stray else _decimals(question, plain, reading) or _coarse(question, reading)
+            ""
+            if wrong_form.note == "stray symbol"
+            else _decimals(question, plain, reading) or _coarse(question, reading)
         )
         return Reply(
             name,
@@ -463,11 +467,15 @@ def _compare(
 def _close(name: str, question: Question) -> Reply:
     """Return the reply to an answer that is, or seems to be, wrong only by rounding."""
     allowed = "" if question.tolerance is None else f" the {question.tolerance:g} that is"
-    message_text = (
-        f"This is close, but off by more than{allowed} allowed. If you rounded, here or earlier, "
-        "keep all digits until the end."
+    return Reply(
+        name,
+        "wrong",
+        "rounded too far",
+        [
+            f"This is close, but off by more than{allowed} allowed. If you rounded, here or "
+            "earlier, keep all digits until the end."
+        ],
     )
-    return Reply(name, "wrong", "rounded too far", [message_text])
 
 
 def _known_in(question: Question, reading: Reading, locker: Locker | None) -> KnownAnswer | None:
@@ -559,10 +567,9 @@ def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
     exact = question.tolerance is None and reading.text is None
     if not exact or not any(node[0] == "float" for node in plain["nodes"]):
         return ""
-    exact_forms = "numbers such as `sm.Rational(1, 2)` and `sm.sqrt(3)`"
     return (
-        "Your answer has decimal fractions, but the question asks for an exact one: write "
-        f"{exact_forms}."
+        "Your answer has decimal fractions, but the question asks for an exact one: write numbers "
+        "such as `sm.Rational(1, 2)` and `sm.sqrt(3)`."
     )
 
 
@@ -575,8 +582,9 @@ def _few_digits(question: Question, plain: Plain) -> str:
     if question.tolerance is None:
         return ""
     absolute, relative = (float(part) for part in tolerances(question))
-    floats = [str(node[1]) for node in plain["nodes"] if node[0] == "float"]
-    floats = [digits for digits in floats if "e" not in digits][:MOST_LOOKED_AT]
+    floats = [
+        str(node[1]) for node in plain["nodes"] if node[0] == "float" and "e" not in str(node[1])
+    ][:MOST_LOOKED_AT]
     squares = [Fraction(digits) ** 2 for digits in floats if float(digits)]
     lengths = [
         sum(squares, Fraction()),
@@ -589,7 +597,7 @@ def _few_digits(question: Question, plain: Plain) -> str:
         allowed = absolute + relative * abs(float(digits))
         if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > 4:
             return (
-                f"If you rounded, keep all digits until the end: `{float(digits):g}` has "
+                f"If you rounded, keep all digits until the end: `{digits}` has "
                 f"{number_of(places, 'decimal place')}, but an answer may be off by at most "
                 f"{allowed:.1g}."
             )
