@@ -99,7 +99,8 @@ def test_keys_work_after_clicks_and_the_page_is_left_whole_where_it_was(opened):
     assert step(page) == 7
     page.keyboard.type("3\n")
     page.keyboard.press("F5")  # the button with which a remote control starts its show
-    assert step(page) == 3 and page.evaluate("document.fullscreenElement !== null")
+    page.wait_for_function("document.fullscreenElement !== null")
+    assert step(page) == 3
     page.evaluate("document.exitFullscreen()")
     page.wait_for_function("document.fullscreenElement === null")
     if page.locator(".lecture-bar").count():
