@@ -311,8 +311,22 @@ def test_the_text_moves_the_gimbal_and_the_reader_may_take_it(open_essay):
     )
 
 
+#: A picture takes long, so that the next one gets fewer pixels. What is on the canvas afterwards?
+COARSER = """() => {
+  const { world } = document.querySelector('.world'), { canvas } = world, { width } = canvas;
+  Object.assign(world, { slow: 9, before: performance.now() - 200 });
+  world.state.angles[0] += 0.5;
+  world.tick(performance.now());
+  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d');
+  copy.drawImage(canvas, 0, 0);
+  const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+  return [canvas.width < width, data.some((entry) => entry)];
+}"""
+
+
 def test_a_drag_turns_the_front_the_way_the_pointer_goes(open_essay):
     page = open_essay()
+    assert page.evaluate(COARSER) == [True, True]
     box = page.locator(".world canvas").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + 0.42 * box["height"]
     view = np.array(page.evaluate("document.querySelector('.world').world.picture.view"))

@@ -218,9 +218,9 @@ class World {
       still = false;
     } else state.carry = null;
     this.picture = sceneOf(state);
+    this.pace(now, still);   // before the drawing, because it may empty the canvas
     this.draw();
     this.script = performance.now() - begun;
-    this.pace(now, still);
     this.before = still ? 0 : now;
     if (!still) this.wake();
   }
