@@ -89,7 +89,6 @@ def test_keys_work_after_clicks_and_the_page_is_left_whole_where_it_was(opened):
     expect(page.locator(".lecture-line")).to_be_focused()
     page.keyboard.press("ArrowRight")
     assert step(page) == 6  # a pointer returns the keys to the lecture
-    slider = page.locator("figure.in-step [type=range]").first
     slider.focus()
     value = slider.input_value()
     page.keyboard.press("ArrowRight")
