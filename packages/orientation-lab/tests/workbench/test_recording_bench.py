@@ -205,17 +205,23 @@ HEADINGS = {
         ("gyro_rad[0]", ""),
         ("wx(deg/s)", ""),
         ("roll_rate_dps", ""),
+        ("Drehrate x", ""),
     ],
     "accelerometer": [
         ("a_RS_S_x [m s^-2]", "data"),
         ("accelerometer_m_s2[0]", ""),
         ("Beschleunigung x (m/s^2)", "Rohdaten"),
+        ("Beschleunigung x", ""),
         ("x-axis (g)", "MetaWear_2024_Accelerometer_100.000Hz_1.7.3"),
         ("gFx", ""),
         ("acc_x_m/s^2", ""),
     ],
     "magnetometer": [("magnetometer_ga[0]", ""), ("MAGNETIC FIELD X (μT)", ""), ("hx(uT)", "")],
-    "linear acceleration": [("LINEAR ACCELERATION X (m/s²)", ""), ("linAccX", "")],
+    "linear acceleration": [
+        ("LINEAR ACCELERATION X (m/s²)", ""),
+        ("linAccX", ""),
+        ("Lineare Beschleunigung x", ""),
+    ],
     "": [("velocity x (m/s)", ""), ("position.x", "fields"), ("dq_0", "")],
 }
 
@@ -245,7 +251,28 @@ SAID = [
     (lines(lambda k: f"9:05:{k / 100:06.3f}", f"time,{SIX}"), "time, in s|"),
     (lines(lambda k: f"0:00:{k / 100:06.3f}", f"time,{SIX}"), "time, in s|"),
     (lines(lambda k: f"9:05:{k // 10:02}", f"time,{SIX}"), "time has the same value as in the row"),
-    (lines(lambda k: f"9:05:{k // 10:02} AM", f"time,{SIX}"), "no column gives each row's time"),
+    (lines(lambda k: f"9:05:{k // 10:02} AM", f"time,{SIX}"), "time has the same value as in the"),
+    (
+        lines(lambda k: f"9th hour, 5:{k // 10:02}", f"time,{SIX}"),
+        "no column gives each row's time",
+    ),
+    # Midnight comes after 100 rows.
+    (
+        lines(
+            lambda k: f"{'11:59:59' if k < 100 else '12:00:00'}.{k % 100:02} {'PA'[k > 99]}M",
+            f"time,{SIX}",
+            200,
+        ),
+        "time, in s|",
+    ),
+    (
+        lines(lambda k: f"{k / 100:.2f}", f"Zeit,{SIX}")
+        .replace(",", '","')
+        .replace(".", ",")
+        .replace("\n", '"\n"')[1:]
+        + '"',
+        "Zeit, in s|",
+    ),
     (lines(lambda k: k / 100, f"time (s),{SIX}", head="Sample rate: ..Hz"), "time (s), in s|"),
     # A log of two kinds of lines, between spaces, with an empty line.
     (
@@ -258,8 +285,12 @@ SAID = [
     (lines(lambda k: f"{k},up -> down", f"time (ms),note,{SIX}"), "in ms||"),
     (lines(lambda k: f"{1.7645e9 + k / 100:.2f}", f"epoch,{SIX}"), "epoch, in s|"),
     (
-        lines(lambda k: f"10/25/2026 02:59:{k / 10:04.1f} AM", f"when,{SIX}"),
-        "left out column 1 (when): '10/25/2026 02:59:07.4 AM' is a time of a form that we cannot",
+        lines(lambda k: f"25 Oct 2026 02:59:{k / 10:04.1f}", f"when,{SIX}"),
+        "left out column 1 (when): '25 Oct 2026 02:59:07.4' is a time of a form that we cannot",
+    ),
+    (
+        lines(lambda k: f"10/25/2026 02:59:{k / 10:04.1f} AM", f"time,{SIX}"),
+        "time, in s|",
     ),
     (lines(lambda k: f"9:05:{k / 100:06.3f} -> {k}", f"time,count,{SIX}"), "time, in s|count|"),
     (
@@ -280,6 +311,7 @@ def test_times_and_further_columns_are_told(text, words):
     found = read_content(text, "recording")
     said = f"{found.clock}|{', '.join(found.unused)}|{list(found.groups)}|{found.remarks}"
     assert words in said and {"gyroscope", "accelerometer"} <= set(found.groups), said
+    assert all((np.diff(group.time) >= 0).all() for group in found.groups.values())
 
 
 UNITS = (
@@ -292,8 +324,13 @@ UNITS = (
 @pytest.mark.parametrize("form", FORMS)
 def test_units_and_axes_of_many_forms_come_out_by_themselves(form):
     given = form()
-    rate = 100 if given.counted else None
-    found = examine(given.content, "recording", rate, TOLD.get(form.__name__, ""), judged=False)
+    found = examine(
+        given.content,
+        "recording",
+        100 if given.counted else None,
+        TOLD.get(form.__name__, ""),
+        judged=False,
+    )
     words = {verdict.about: verdict.words for verdict in found.verdicts}
     of_rates, of_forces = (given.scales[kind] for kind in ("gyroscope", "accelerometer"))
     assert words["unit of the gyroscope"].startswith(UNITS[0].get(of_rates, "counts"))

@@ -21,10 +21,11 @@ if TYPE_CHECKING:
 NAMES = {
     "quaternion": r"quat\w*|orientation|attitude|q",
     "gravity": r"grav\w*",
-    "linear acceleration": r"(?:user|lin|linear)(?: acc\w*)?",
+    "linear acceleration": r"(?:user|lin|lineare?)(?: acc\w*| ?beschl\w*)?",
     "magnetometer": r"mag\w*|(?:magnetic )?field|[mbh]",
-    "gyroscope": r"gyr\w*|angular (?:velocity|rate)|(?:rotation )?rate|omega|[gw]",
-    "accelerometer": r"(?:total )?acc\w*|(?:specific )?force|[af]",
+    "gyroscope": r"gyr\w*|angular (?:velocity|rate)|(?:rotation )?rate|omega|[gw]"
+    r"|drehrate|winkelg\w*",
+    "accelerometer": r"(?:total )?acc\w*|beschl\w*|(?:specific )?force|[af]",
 }
 #: The names of rotations about z, y and x, or in phones about z, x and y.
 ANGLES = (
@@ -43,7 +44,7 @@ UNITS = {
 #: Words of a heading that do not name its sensor, and words that are units unless they come first.
 BESIDE = "cal uncal raw ln wr adc smooth element axis value".split()
 UNIT_WORDS = "m s s2 ms2 mps2 rad deg dps per sec g mg ga ut micro t".split()
-CLOCK = r"\btime|stamp|elapsed|clock|epoch|\bt$|\bsec"
+CLOCK = r"\btime|\bzeit|stamp|elapsed|clock|epoch|\bt$|\bsec"
 COUNTER = r"counter|packet|number|index|frame|iteration|tick|\bsample\b(?! time)|\bcount$|\bid$"
 RATE = r"(?:rate|frequency)[\W_]*(\d+(?:\.\d+)?)\s*hz"
 #: The kinds of columns that the bench can use.

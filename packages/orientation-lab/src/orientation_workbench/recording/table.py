@@ -260,7 +260,12 @@ def _from_text(text: str, name: str) -> list[Table]:
         _split(line, delimiter)
         for line in (_stamped(lines, delimiter) if delimiter and " -> " in text else lines)
     ]
-    comma = delimiter != "," and sum(_is_comma(field) for row in rows[:400] for field in row) > 10
+    comma = 10 < sum(
+        # Between commas, "1,234" may be a thousand and more.
+        _is_comma(field) and not (delimiter == "," and re.search(r",\d{3}$", field))
+        for row in rows[:400]
+        for field in row
+    )
     first = Counter(row[0] for row in rows if len(row) > 3 and _number(row[0], comma) is None)
     # A time of the day in a form that we cannot read does not name a kind of line.
     kinds = [
@@ -333,17 +338,23 @@ def _is_comma(field: str) -> bool:
 
 def _number(field: str, comma: bool = False) -> float | None:
     """Return the number in a field, NaN for a missing one, None for anything else."""
-    try:
+    with suppress(ValueError):
         return float(field.replace(",", ".") if comma else field)
-    except ValueError:
-        pass
     if ":" not in field:
         return float("nan") if field.lower() in MISSING else None
-    # A date, which may have the day first and points, with a time, or a time alone. The hour may
-    # have one digit.
-    field = re.sub(r"(?<!\d)(\d:)", r"0\1", field)
-    day = re.sub(r"^(\d\d)\.(\d\d)\.(\d{4})", r"\3-\2-\1", field).replace("/", "-")
-    for text in (day, f"2000-01-01T{field}"):
+    # A date, which may have the day first and points, or the month first and strokes, with a time,
+    # or a time alone. The hour may have one digit, and half a day after it.
+    field = re.sub(
+        r"^(.* )?(\d\d?)(:[\d:.]+) ?([ap])\.?m\.?$",
+        lambda at: f"{at[1] or ''}{int(at[2]) % 12 + 12 * (at[4] == 'p')}{at[3]}",
+        field.lower(),
+    ).upper()
+    field = re.sub(r"(?<!\d)(\d[:/])", r"0\1", field)
+    for text in (
+        re.sub(r"^(\d\d)/(\d\d)/(\d{4})", r"\3-\1-\2", field).replace("/", "-"),
+        re.sub(r"^(\d\d)\.(\d\d)\.(\d{4})", r"\3-\2-\1", field),
+        f"2000-01-01T{field}",
+    ):
         with suppress(ValueError):
             return datetime.fromisoformat(text).timestamp()
     return None
@@ -354,7 +365,7 @@ def _numbers_per_line(lines: Sequence[str], delimiter: str | None) -> float:
     middle = [line for line in lines[len(lines) // 4 :] if line.strip()][:200]
     counts = [
         sum(
-            _number(field) is not None or _is_comma(field) and delimiter != ","
+            _number(field) is not None or _is_comma(field)
             for field in _split(line, delimiter)
             if field
         )
@@ -440,8 +451,18 @@ def _table(
             if k not in numeric and re.search(r"\d:\d\d(?!\d)", sample[0][1][k])
         ),
     ]
-    head = "\n".join(",".join(row) for _, row in there[:begin])
-    return Table(name, [columns[k] for k in numeric], np.array(kept, dtype=float), remarks, head)
+    table = np.array(kept, dtype=float)
+    for column, k in zip(table.T, numeric):
+        # A time of the day begins anew at midnight.
+        if re.match(r"\d\d?:\d\d", sample[0][1][k]):
+            column[1:] += 86_400 * np.cumsum(np.diff(column) < -43_200)
+    return Table(
+        name,
+        [columns[k] for k in numeric],
+        table,
+        remarks,
+        "\n".join(",".join(row) for _, row in there[:begin]),
+    )
 
 
 def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
@@ -466,7 +487,7 @@ def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
             f"{name} [{unit.strip('()[]')}]" if unit else name
             for name, unit in zip(names, below, strict=True)
         ]
-    names = [*names, *(f"column {k + 1}" for k in range(len(names), width))][:width]
+    names = [*names, *[""] * width][:width]
     return [name or f"column {k + 1}" for k, name in enumerate(names)]
 
 
@@ -483,8 +504,7 @@ def _from_log(
     for number, row in enumerate(rows, 1):
         lines_of.setdefault(row[0] if row else "", []).append((number, row[1:]))
     for kind in kinds:
-        lines = lines_of[kind]
-        columns = heads.get(kind)
+        lines, columns = lines_of[kind], heads.get(kind)
         # Of several instruments of a kind, which column I distinguishes, only the first counts.
         if columns and "I" in columns:
             which = columns.index("I")
@@ -517,9 +537,8 @@ def _from_json(text: str, name: str) -> list[Table]:
     ):
         return [_table([[*map(str, row)] for row in content], name, False)]
     [content] = content if len(content) == 1 else [content]
-    lists = content if isinstance(content, dict) else {name: content}
     kinds: dict[str, list[dict[str, object]]] = {}
-    for key, entries in lists.items():
+    for key, entries in (content if isinstance(content, dict) else {name: content}).items():
         for entry in entries if isinstance(entries, list) else []:
             if isinstance(entry, dict):
                 kinds.setdefault(str(entry.get("sensor", key)), []).append(_flat(entry))
