@@ -382,13 +382,14 @@ CANVAS_BOOK = """Student,ID,SIS User ID,SIS Login ID,Section,Turns (4711)
     [
         ("doejane_101_5_turns.ipynb", "jdoe", "Canvas's number"),
         ("smithbob_203_5_turns.ipynb", "bsmith2", "Canvas's number"),
-        ("doejane_999_5_turns.ipynb", None, "Nobody"),  # Canvas knows the number.
+        ("doejane_999_5_turns.ipynb", None, "matches. Whose"),  # Canvas knows the number.
         ("jdoe/turns.ipynb", "jdoe", "the name of the folder"),
         ("JDoe/turns.ipynb", "jdoe", "the name of the folder"),
         ("Jane Doe/turns.ipynb", "jdoe", "the full name"),
         ("Bob Smith/turns.ipynb", None, "Several students in the roster match: bsmith, bsmith2"),
         ("S2/turns.ipynb", "bsmith", "the name of the folder"),
         ("stranger/turns.ipynb", None, "Nobody"),
+        ("00S2/turns.ipynb", None, "It has 's2': a spreadsheet may have removed zeros"),
         ("jd\u200boe/turns.ipynb", "jdoe", "the name of the folder"),
         ("jd\u043ee/turns.ipynb", None, "Nobody"),  # It has a Cyrillic o.
         ("Jane Doe_77_assignsubmission_file_/turns.ipynb", "jdoe", "the full name"),
@@ -489,6 +490,8 @@ CODE = {"cell_type": "code", "source": "", "metadata": {}, "outputs": [], "execu
         (b" \n", "empty"),
         (half(GOOD), "not well-formed JSON"),
         (b"PK\x03\x04 another format", "not well-formed JSON"),
+        (b"\n<!DOCTYPE html><title>Log in</title>", "a web page"),
+        (b'{"cells": [\n<<<<<<< HEAD\n', "a merge conflict"),
         (b"[]", "no cells"),
         (b'{"nbformat": 4}', "no cells"),
         (b'{"cells": {}, "nbformat": 4}', "not a list"),

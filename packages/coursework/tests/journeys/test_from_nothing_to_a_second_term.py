@@ -172,11 +172,11 @@ def test_a_sitting_of_a_class(run, tmp_path, monkeypatch):
         and "Run the cell" not in sheets
         and "rectangle" in markers
     )
-    assert "decision is pending: 30." in run("export marks --assignment quiz --nbgrader n.csv")
+    assert "`coursework review`: 30." in run("export marks --assignment quiz --nbgrader n.csv")
     # A letter without a box enters nothing. Each box is worth what it says.
     merge = "merge marks marks/sittings/quiz/ticks.csv --grader Ann"
     ticked(place / "ticks.csv", area=lambda student: "Q", slope=lambda student: "A")
-    assert "'Q' is neither a credit from 0 to 1 nor the letter of a box" in run(merge, fails=True)
+    assert "'Q' is neither a credit from 0 to 1, nor points" in run(merge, fails=True)
     ticked(
         place / "ticks.csv", area=lambda name: "b" if name < "s-10" else "A", slope=lambda _: "A"
     )

@@ -56,6 +56,9 @@ def test_the_worth_of_a_question_changes(tmp_path):
     assert course.column(book, "HW 2 (7)") == {"ada": "8", "ben": "16"}
     course.regrade("--yes")
     assert course.points() == {"ada": 24, "ben": 32}
+    # Nobody was asked a question that was added or renamed since.
+    course.change("hw2", force=(7, 8))
+    assert "2 students would become undecided" in course.regrade(fails=True)
 
 
 @pytest.mark.parametrize(
@@ -165,8 +168,10 @@ def test_a_column_is_filled_with_one_assignment(tmp_path):
     course.grade()
     book = course.canvas_book("HW 1 (6)", "HW 2 (7)")
     for which in ([], ["--assignment", "hw2"]):
-        said = course.export(book, *which, fails=True)
-        assert "to the assignment's table. The gradebook has the columns 'HW 1 (6)'," in said
+        assert (
+            "to the assignment's table. The gradebook has the columns 'HW 1 (6)',"
+            in course.export(book, *which, fails=True)
+        )
     (course.marks / "term.toml").write_text(
         'time-zone = "UTC"\n[assignments.hw1]\n[assignments.hw2]\ncolumn = "hw 2"\n'
     )
@@ -218,8 +223,7 @@ def test_a_line_of_the_journal_that_was_edited_is_noticed(course):
     path = course.marks / "journal.jsonl"
     whole = path.read_text()
     path.write_text(whole.replace('"points": 4', '"points": 3'))
-    said = course.regrade(fails=True)
-    assert "journal.jsonl, line 1: this is not what coursework wrote" in said
+    assert "journal.jsonl, line 1: this is not what coursework wrote" in course.regrade(fails=True)
     # A torn last line is reported, and all complete lines count.
     path.write_text(whole + whole[:40])
     said = course.regrade()

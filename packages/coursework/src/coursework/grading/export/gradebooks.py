@@ -408,7 +408,7 @@ HEADINGS = {
     "strangers": "Handed in, but not in the gradebook",
     "missing": "Handed in nothing by the due date: 0",
     "several": "Not filled in, because the name is ambiguous",
-    "waiting": "Not filled in, because a decision is pending",
+    "waiting": "Not filled in until you decide, in `coursework review`",
     "appeals": "Filled in, but may change because of an open appeal",
     "closed": "Not filled in, because the system allows no change",
     "excused": "Not filled in, because excused in term.toml",
@@ -770,7 +770,7 @@ def write_nbgrader(path: str | Path, marks: Marks) -> str:
     write(path, table(NBGRADER, rows), private=True)
     return (
         f"{number_of(len(rows), 'mark')}: {path}. "
-        f"Left out, because a decision is pending: {pending}."
+        f"Left out until you decide, in `coursework review`: {pending}."
     )
 
 

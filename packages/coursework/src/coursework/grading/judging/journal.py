@@ -924,11 +924,13 @@ def _credit(text: str, where: str) -> float | None:
     if not text:
         return None
     try:
-        share = float(text.replace(",", ".") if "." not in text else text)
-        if not 0 <= share <= 1:
-            raise ValueError
-        return share
-    except ValueError:
-        raise ValueError(
-            f"{where}: {text!r} is neither a credit from 0 to 1 nor the letter of a box to tick."
-        ) from None
+        # Points, such as "3 of 4", become a share. A spreadsheet would make a date of "3/4".
+        points, _, worth = text.replace(",", ".").replace(" of ", "/").partition("/")
+        if 0 <= (share := float(points) / float(worth or 1)) <= 1:
+            return share
+    except (ValueError, ZeroDivisionError):
+        pass
+    raise ValueError(
+        f"{where}: {text!r} is neither a credit from 0 to 1, nor points such as '3 of 4', nor the "
+        "letter of a box to tick."
+    )

@@ -20,9 +20,9 @@ from .journal import Given, Journal, Part
 PAGE = "regrade.html"
 #: Stands in place of a variant's name for all variants that the source no longer has.
 TAKEN_OUT = "taken-out"
-#: The note of an answer whose notebook must run again, since the question now calls a function
-#: differently.
-RUN_AGAIN = "not called"
+#: The outcomes of an answer whose notebook must run again, since the question now calls a function
+#: differently, or is new or has a new name.
+RUN_AGAIN = ("undecided (not called)", "undecided (not run)")
 # The most changes on the screen. The table and the page have all of them.
 MOST_SHOWN = 40
 
@@ -164,7 +164,7 @@ class Move(NamedTuple):
     @property
     def run_again(self) -> bool:
         """Whether an answer must be run again, since the stored data are not enough to judge it."""
-        return any(change.outcome == f"undecided ({RUN_AGAIN})" for change in self.changes)
+        return any(change.outcome in RUN_AGAIN for change in self.changes)
 
     def __str__(self) -> str:
         said = [number(self.before), number(self.after)]

@@ -28,7 +28,7 @@ from ...checking.question import Locker
 from ...checking.questions import OTHER_NUMBERS, compare
 from ...checking.reading import canonical, fingerprint, read
 from ...checking.reply import HELP, Reply
-from ..record import MISSING, Answer, Case, Mark, Record, Remembered
+from ..record import Answer, Case, Mark, Record, Remembered
 from ..store import write
 from ..versions import software
 from ..workers import processors, side_by_side
@@ -64,6 +64,8 @@ PICTURE = re.compile(r'<p><img alt="[^"]*" width="[^"]*" src="[^"]*"></p>')
 #: The outcomes of a cell that a limit stopped. An answer missing after that may be lost to the
 #: limit.
 BY_A_LIMIT = ("timeout", "memory", "disk", "output")
+#: In place of an answer that no run of the notebook looked for. A run stores one for each question.
+NOT_RUN = Answer("not run")
 #: The sandbox's reasons if a limit, not the answer's form, cut short its reading.
 CUT_SHORT = ("It exceeded the time limit.", "It exceeded the memory limit.")
 
@@ -323,15 +325,16 @@ def mark(
     Mark
     """
     # Many students hand in the same answer. The mark depends only on these values.
-    before = (question.before or question.contract).version
-    of_question = (
+    known = (
         name,
         question.contract.version,
-        before,
+        (question.before or question.contract).version,
         len(question.siblings),
         len(question.others),
+        json.dumps(answer.as_json()),
+        finished,
+        limited,
     )
-    known = *of_question, json.dumps(answer.as_json()), finished, limited
     if known not in _marked:
         if len(_marked) >= MOST_KEPT:
             _marked.clear()
@@ -442,7 +445,7 @@ def mark_with_siblings(
         What the record remembers.
     """
     known = remembered.get(name)
-    found = mark(name, question, answers.get(name, MISSING), finished, limited)
+    found = mark(name, question, answers.get(name, NOT_RUN), finished, limited)
     found, had = replace(found, tries=known.tries if known else None), known.help if known else ""
     for sibling, other in question.second_chances.items():
         helped = sibling in remembered and remembered[sibling].help
@@ -500,10 +503,15 @@ def judge(
                 "lost to a limit",
                 "A time or memory limit stopped a cell, and this answer is missing.",
             ), ""
-        variable = (
-            f" under the name `{question.contract.variable}`" if question.contract.variable else ""
-        )
-        return Reply(name, "not attempted", "missing", [f"No answer was found{variable}."]), ""
+        named = f" under the name `{contract.variable}`" if contract.variable else ""
+        return Reply(name, "not attempted", "missing", [f"No answer was found{named}."]), ""
+    if answer == NOT_RUN:
+        return _undecided(
+            name,
+            "not run",
+            "The notebook was graded before it was asked this question, or before the question got "
+            "this name. Grade again to run it.",
+        ), ""
     if state == "on paper":
         return _undecided(name, "on paper", "A person marks this sheet."), ""
     if state == "unreadable" and answer.why not in CUT_SHORT:
@@ -525,11 +533,12 @@ def judge(
     try:
         plain = in_calls_of(question, read_plain(answer.plain))
         if plain is None:
-            said = (
+            return _undecided(
+                name,
+                "not called",
                 "We have not called the function with this question's current arguments. Grade "
-                "again to run it."
-            )
-            return _undecided(name, "not called", said), ""
+                "again to run it.",
+            ), ""
         reply = compare(name, contract.question, plain, look_up)
         rounded = reply.outcome == "wrong" and reply.note in ("", "rounded too far")
         if rounded and _nearly_right(contract, plain):

@@ -469,13 +469,16 @@ def new_term(folder: str | Path, sources: Path, roster: str | None) -> str:
         names=json.dumps(names, ensure_ascii=False)[1:-1],
         first=names[0],
     )
-    if roster:
-        # Read the roster first, so that a bad one does not leave a term that nobody can use.
-        Roster(roster)
+    # Read the roster first, so that a bad one does not leave a term that nobody can use.
+    people = list(Roster(roster).people) if roster else []
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     path.write_text(text, "utf8")
     read_term(path)
-    return f"We wrote {path}. Read it, and make your choices."
+    return f"We wrote {path}. Read it, and make your choices." + (
+        f" The roster has {number_of(len(people), 'student')}, with IDs such as {people[0]!r}."
+        if people
+        else ""
+    )
 
 
 def read_term(path: str | Path) -> Term:

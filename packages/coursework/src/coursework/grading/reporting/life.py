@@ -24,7 +24,10 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
     key = whose, assignment
     record, all_given = store.read(*key), journal.standing().given
     given = all_given.get(key)
-    expected = term.roster and student in term.roster.people and assignment in term.assignments
+    refused = [file for file in refused_of(store) if file.student in (student, whose)]
+    expected = assignment in (*term.assignments, *(name for _, name in all_given)) and (
+        refused or (term.roster and student in term.roster.people)
+    )
     if given and record is None or not given and not expected:
         own = sorted(name for owner, name in all_given if owner == whose)
         known = own or sorted({owner for owner, _ in all_given})
@@ -42,7 +45,6 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         )
     comes_to = _of(given) if given else "nothing that can be graded was handed in"
     lines = [f"{student}{f' (in {whose})' * (whose != student)}, {assignment}: {comes_to}."]
-    refused = [file for file in refused_of(store) if file.student in (student, whose)]
     lines += [f"  cannot be graded: {in_a_line(file.file, 120)}: {file.why}" for file in refused]
     cases = record.cases if record else {}
     for notebook in record.notebooks if record else ():

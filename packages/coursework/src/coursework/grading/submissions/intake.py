@@ -962,7 +962,11 @@ def _json(data: bytes) -> dict[str, object]:
         raise Unfit("It is nested too deeply.") from None
     except ValueError as error:
         where = f" (line {error.lineno})" if isinstance(error, json.JSONDecodeError) else ""
-        raise Unfit(f"Not a notebook: it is not well-formed JSON{where}.") from None
+        raise Unfit(
+            f"Not a notebook: it is not well-formed JSON{where}."
+            + " It is a web page, perhaps one that asks to log in." * data.lstrip().startswith(b"<")
+            + " It contains the marks of a merge conflict." * (b"\n<<<<<<< " in data)
+        ) from None
     if not isinstance(notebook, dict) or not {"cells", "worksheets"} & set(notebook):
         raise Unfit("Not a notebook: it has no cells.")
     return notebook

@@ -155,8 +155,10 @@ class Roster:
         ``place`` is the name of the folder or file, which the roster may list under ``handed in
         as``. With ``numbered_anew``, Moodle's numbers are not those in the roster.
         """
-        names = dict.fromkeys((place, PurePosixPath(place).stem)) if place else ()
-        keys = (*(("handed in as", name) for name in names), *keys)
+        keys = (
+            *(("handed in as", name) for name in (place, PurePosixPath(place).stem) if name),
+            *keys,
+        )
         surest = ""
         for kind, value in keys:
             if surest not in ("", kind):
@@ -183,7 +185,18 @@ class Roster:
                     "The roster has no column `github`, and a GitHub name alone proves nothing, "
                     "since anybody can choose one."
                 )
-        return None, "Nobody in the roster matches."
+        claimed = [(kind, _same(kind, value)) for kind, value in keys]
+        near = [
+            value
+            for kind, value in sorted(self.index)
+            if (kind, value) not in claimed
+            and (kind, value.lstrip("0")) in [(kind, claim.lstrip("0")) for kind, claim in claimed]
+        ]
+        return None, "Nobody in the roster matches." + (
+            f" It has {near[0]!r}: a spreadsheet may have removed zeros in front of the IDs."
+            if near
+            else ""
+        )
 
     def are_a_group(self, people: Iterable[Iterable[tuple[str, str]]]) -> bool:
         """Check whether all people that these keys mean work in one group."""
@@ -197,8 +210,11 @@ class Roster:
             # This is a group.
             return Identity({}, (student,))
         person = self.people[student]
-        kinds = ("canvas", "moodle", "brightspace", "name", "email")
-        called = {kind: person.called[kind][0] for kind in kinds if person.called.get(kind)}
+        called = {
+            kind: person.called[kind][0]
+            for kind in ("canvas", "moodle", "brightspace", "name", "email")
+            if person.called.get(kind)
+        }
         return Identity(
             called,
             (*person.called.get("own", ()), *((person.local_part,) if person.local_part else ())),
