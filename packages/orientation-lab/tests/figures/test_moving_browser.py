@@ -363,7 +363,6 @@ def test_every_number_of_the_triad_says_what_it_means(open_figure):
     assert cells.count() == 9 + 3 + 4 + 4
     for k in range(cells.count()):
         cells.nth(k).hover()
-        settle(page)
         meanings.add(words(page))
         assert drawing(page) != plain and page.locator(".sheet .faded").count() > 5
     assert len(meanings) == cells.count()
@@ -371,10 +370,9 @@ def test_every_number_of_the_triad_says_what_it_means(open_figure):
     settle(page)
     assert drawing(page) == plain
     # By the arrow keys, and read aloud.
-    first = page.locator(
+    page.locator(
         '[aria-label="Direction cosine matrix of A with respect to N"] button'
-    ).first
-    first.focus()
+    ).first.focus()
     page.keyboard.press("ArrowRight")
     page.keyboard.press("ArrowDown")
     assert page.evaluate("document.activeElement.dataset.at") == "1,1"
@@ -459,6 +457,10 @@ def test_after_enter_a_field_shows_what_the_figure_uses(open_figure):
         assert field.get_attribute("aria-invalid") == "true"
         field.press("Enter")
         assert (field.input_value(), field.get_attribute("aria-invalid")) == (used, "false")
+    # The two ends of a slider are one orientation, but not one place.
+    for key, end, said in (("End", "180", " 180° about"), ("Home", "-180", " \u2212180° about")):
+        simple.get_by_role("slider").press(key)
+        assert said in words(simple) and simple.get_by_role("slider").input_value() == end
     entry.fill("")
     assert entry.get_attribute("aria-invalid") == "true"
     entry.type("-0.25")
@@ -531,8 +533,9 @@ def test_a_figure_starts_from_its_own_state(open_figure):
         [moving.TriadFigure(angle=0.5), moving.TriadFigure(angle=-1.0, axis=(0, 0, 1))]
     )
     fields = page.get_by_label("theta in degrees")
-    values = [float(fields.nth(k).input_value()) for k in range(2)]
-    assert values == pytest.approx(np.degrees([0.5, -1.0]), abs=0.01)
+    assert [float(fields.nth(k).input_value()) for k in range(2)] == pytest.approx(
+        np.degrees([0.5, -1.0]), abs=0.01
+    )
     fields.nth(0).fill("90")
     settle(page)
     assert float(fields.nth(1).input_value()) == pytest.approx(np.degrees(-1.0), abs=0.01)

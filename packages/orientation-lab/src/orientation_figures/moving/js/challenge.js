@@ -2,13 +2,12 @@ import { AXES, axisAngleFromDcm, degrees, IDENTITY, multiply, radians, transpose
 import { picture, SIZE } from './challenge_picture.js';
 import { chain, partly } from './common_picture.js';
 import { button, change, choice, element, fixed, follow, followTurn, group, liveText, numberTable, onceAFrame,
-  open, plain, player, put, readout, Sheet, slider, stage, wrapped, write } from './shared.js';
+  open, plain, plainDegrees, player, put, readout, Sheet, slider, stage, wrapped, write } from './shared.js';
 import { hatted } from './words_picture.js';
 
 const MOST = 20, CLOSE = radians(2), SECONDS = 6;
 const [N, A] = ['n', 'a'].map(hatted);
 const any = (list) => list[Math.floor(Math.random() * list.length)];
-const inDegrees = (angle) => `${plain(degrees(angle), 1).replace('-', '\u2212')}°`;
 
 // Make a new challenge: axes of which no two neighbours are equal, and angles that suit the task.
 function another(task) {
@@ -85,7 +84,7 @@ export function render({ model, el }) {
     ghost.at(share * SECONDS);
     wanted.show(goal.map((row) => row.map((entry) => fixed(entry))));
     current.show(dcm.map((row) => row.map((entry) => fixed(entry))));
-    write(rest, inDegrees(angle));
+    write(rest, plainDegrees(angle, 1));
     put(bar.firstChild, 'style', `width:${(degrees(angle) / 1.8).toFixed(1)}%`);
     put(bar, 'aria-valuenow', plain(degrees(angle), 1));
     sheet.draw(() => {
@@ -101,7 +100,7 @@ export function render({ model, el }) {
   return follow(model, ['task', 'given', 'turns'], redraw);
 }
 
-const told = (turns) => turns.map(([axis, angle]) => `${inDegrees(angle)} about ${A[AXES.indexOf(axis)]}`).join(', then ');
+const told = (turns) => turns.map(([axis, angle]) => `${plainDegrees(angle, 1)} about ${A[AXES.indexOf(axis)]}`).join(', then ');
 
 function sentence(task, given, made, angle) {
   const count = `${made.length} turn${made.length === 1 ? '' : 's'}`;
@@ -111,7 +110,7 @@ function sentence(task, given, made, angle) {
   }
   if (task === 'match') return `Turn the box about its own arrows until its matrix is that of the goal. ${made.length ? `Now: ${told(made)}.` : 'Read the rows of the goal first: where does each arrow have to point?'}`;
   if (task === 'undo') return `The box was turned from $N$ through ${told(given)}. Turn it back. ${made.length ? `${count} so far: ${told(made)}.` : ''}`;
-  const angles = given.map(([, one]) => inDegrees(one)).join(', then ');
+  const angles = given.map(([, one]) => plainDegrees(one, 1)).join(', then ');
   return `The ghost turned through ${angles}, each time about one of its own arrows. Press Play, watch, and make the same turns. ${
     made.length === given.length ? 'Not yet: undo a turn, and look again.' : ''}`;
 }

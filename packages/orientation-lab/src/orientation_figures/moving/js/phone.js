@@ -1,8 +1,8 @@
 import { AXES, bodyFixedFromDcm, dcmFromBodyFixed, dcmFromQuaternion, degrees, dot, length,
   quaternionFromDcm, radians, scale, slerp, transpose } from './mathematics.js';
 import { picture, SIZE } from './phone_picture.js';
-import { button, change, element, fixed, follow, group, liveText, numberTable, onceAFrame, open, plain,
-  player, readout, Sheet, slider, stage, wrapped } from './shared.js';
+import { button, change, element, fixed, follow, group, liveText, numberTable, onceAFrame, open,
+  plainDegrees, player, readout, Sheet, slider, stage, wrapped } from './shared.js';
 import { hatted } from './words_picture.js';
 
 const GRAVITY = 9.80665, RECORD_SECONDS = 10, PATIENCE = 3000;
@@ -202,8 +202,8 @@ export function render({ model, el }) {
     turning.show([(sensors.rate ?? [0, 0, 0]).map((entry) => fixed(degrees(entry), 1))]);
     sheet.draw(() => picture(sheet, dcm));
     if (!alive && !text.element.textContent) {
-      text.say(`Body fixed z-x-y: $\\alpha$ = ${plain(degrees(angles[0]), 0)}°, $\\beta$ = ${plain(degrees(angles[1]), 0)}°, `
-        + `$\\gamma$ = ${plain(degrees(angles[2]), 0)}°. The specific force is that of a phone at rest.`);
+      text.say(`Body fixed z-x-y: $\\alpha$ = ${plainDegrees(angles[0], 0)}, $\\beta$ = ${plainDegrees(angles[1], 0)}, `
+        + `$\\gamma$ = ${plainDegrees(angles[2], 0)}. The specific force is that of a phone at rest.`);
     }
   }
 

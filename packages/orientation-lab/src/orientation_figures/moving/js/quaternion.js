@@ -123,7 +123,7 @@ function doubleView(model) {
 
 function doubleText(theta, more) {
   const turns = theta / (2 * Math.PI), whole = Math.round(turns);
-  const half = `$\\theta$ = ${plain(degrees(theta), 1)}°, half of it ${plain(degrees(theta / 2), 1)}°.`;
+  const half = `$\\theta$ = ${plain(degrees(theta), 1)}°, half of it ${plain(degrees(theta / 2))}°.`;
   if (Math.abs(turns - whole) > 1e-9 && !more) return half;
   if (Math.abs(turns - whole) > 1e-9) return `${half} $q$ and $-q$ are opposite points of the circle, and one and the same orientation.`;
   return [`${half} $A$ is where $N$ is, and $q$ is 1.`,

@@ -82,8 +82,9 @@ export function fixed(value, digits = 3) {
   return (value < 0 && Number(text) !== 0 ? '\u2212' : '\u2007') + text;
 }
 
-// Format degrees for a field, such as '35' or '-12.5', without the rounding error of the conversion.
+// Format degrees for a field, such as '35' or '-12.5', without the rounding error of the conversion; an angle for a text.
 export const plain = (value, digits = 2) => String(Number(value.toFixed(digits)) + 0);
+export const plainDegrees = (angle, digits = 2) => `${plain(degrees(angle), digits).replace('-', '\u2212')}°`;
 
 // ---- cameras -------------------------------------------------------------------------------------------
 
@@ -301,8 +302,8 @@ export function followSphere(sheet, { vector, at }) {
   };
 }
 
-// Bring an angle into the range from -pi to pi.
-export const wrapped = (angle) => angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
+// Bring an angle into the range from -pi to pi, and leave both of these as they are: they are the ends of a slider.
+export const wrapped = (angle) => angle - 2 * Math.PI * Math.sign(angle) * Math.ceil(Math.abs(angle) / (2 * Math.PI) - 0.5);
 
 // ---- controls ------------------------------------------------------------------------------------------
 

@@ -1,7 +1,7 @@
 import { AXES, degrees, IDENTITY, radians, scale, simpleDcm } from './mathematics.js';
 import { picture, REACH, SIZE } from './simple_picture.js';
 import { button, change, choice, element, fixed, follow, followTurn, group, liveText, numberTable, onceAFrame,
-  open, plain, readout, Sheet, slider, stage, wrapped } from './shared.js';
+  open, plain, plainDegrees, readout, Sheet, slider, stage, wrapped } from './shared.js';
 import { hatted } from './words_picture.js';
 
 const FLAT = 84;
@@ -57,7 +57,7 @@ export function render({ model, el }) {
     axis.show(AXES[k]);
     matrix.show(now.dcm.map((row) => row.map((entry) => fixed(entry))));
     for (const sheet of [space, flat]) sheet.draw(() => drawn(sheet, now, lit));
-    text.say(lit ? meaning(now, ...lit) : `$A$ is turned from $N$ through $\\theta$ = ${plain(degrees(theta))}° about ${N[k]} = ${A[k]}.`
+    text.say(lit ? meaning(now, ...lit) : `$A$ is turned from $N$ through $\\theta$ = ${plainDegrees(theta)} about ${N[k]} = ${A[k]}.`
       + ' Touch a number to see the shadow that it measures.');
   }
 

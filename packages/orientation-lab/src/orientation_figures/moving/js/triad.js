@@ -3,7 +3,7 @@ import { AXES, bodyFixedFromDcm, dcmFromAxisAngle, degrees, dot, gimbalLockMargi
 import { around } from './common_picture.js';
 import { KNOB, picture, REACH, SIZE } from './triad_picture.js';
 import { button, change, choice, element, fixed, follow, followSphere, followTurn, group, liveText,
-  numberField, numberTable, onceAFrame, open, plain, readout, Sheet, slider, stage, wrapped } from './shared.js';
+  numberField, numberTable, onceAFrame, open, plainDegrees, readout, Sheet, slider, stage, wrapped } from './shared.js';
 import { hatted, turned } from './words_picture.js';
 
 const ANGLES = ['$\\psi$', '$\\theta$', '$\\varphi$'];
@@ -85,7 +85,7 @@ export function render({ model, el }) {
       sheet.layer = 1;
       meaning?.draw(sheet);
     });
-    text.say(meaning?.words ?? `$A$ is turned from $N$ through $\\theta$ = ${plain(degrees(now.angle))}° about $\\hat{e}$ = `
+    text.say(meaning?.words ?? `$A$ is turned from $N$ through $\\theta$ = ${plainDegrees(now.angle)} about $\\hat{e}$ = `
       + `(${now.axis.map((entry) => number(entry)).join(', ')}). Touch a number to see what it means.`);
   }
 
