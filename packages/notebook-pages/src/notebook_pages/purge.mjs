@@ -31,7 +31,7 @@ function namesIn(page) {
     for (const [, name, , double, single, bare] of attributes.matchAll(/([^\s=>]+)(\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s>]+)))?/g)) {
       found.attributes.add(name);
       for (const word of (double ?? single ?? bare ?? "").split(/\s+/)) {
-        if (word.length < 60) found.values.add(word), ({ class: found.classes, id: found.ids })[name]?.add(word);
+        found.values.add(word.slice(0, 60)), ({ class: found.classes, id: found.ids })[name]?.add(word); // data can be long
       }
     }
   }
@@ -84,7 +84,7 @@ else if (files[0] === "--later") {
   let count = 0;
   root.walkRules((rule) => rule.append({ prop: "--rule", value: String(count++) }));
   const stateless = root.clone();
-  stateless.walkRules((rule) => (rule.selector = rule.selector.replace(/::?[a-z-]+(?![a-z(-])/g, "[open]")));
+  stateless.walkRules((rule) => (rule.selector = rule.selector.replace(/::?[a-z-]+(?![a-z(/-])/g, "[open]")));
   const atOnce = new Set((await purged(stateless.toString(), [])).match(/(?<=--rule: ?)\d+/g));
   root.walkRules((rule) => {
     if (/url\((?!["']?data:)/.test(rule)) atOnce.add(rule.last.value);
