@@ -264,6 +264,9 @@ SPELLED = {
     "W = {2:.6f} deg, P = {1:.6f} deg, R = {0:.6f} deg".format(
         *np.degrees(body_fixed_from_dcm(DCM, "zyx"))
     ),
+    "R": "       [,1]    [,2]    [,3]\n[1,] {} {} {}\n[2,] {} {} {}\n[3,] {} {} {}".format(
+        *entries()
+    ),
     "MATLAB's live script": "R = 3\u00d73\n    {}    {}    {}\n    {}    {}    {}\n"
     "    {}    {}    {}".format(*entries()),
     "Julia": "3\u00d73 SMatrix{{Float64}} with indices SOneTo(3)\u00d7SOneTo(3):\n {} {} {}\n"

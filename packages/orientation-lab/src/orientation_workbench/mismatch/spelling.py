@@ -132,6 +132,8 @@ SPELLING = {
         (r"\bwith indices.*$", " "),
         # The number of a row, before the row.
         (r"^\s*(?:row\s*)?\d{1,3}\s*[:)]\s+(?=[-+.\d\[(])", " "),
+        # The numbers that R prints beside rows, above columns and before a vector.
+        (r"\[(?:\d+,|,\d+)\]|^\s*\[\d+\](?=\s+[-.\d])", " "),
         # The length before a list, the factor of MATLAB's console, and Godot's columns with their
         # origin.
         (r"\barray\s*\(\d+\)|\(\d+\)\s*(?=\[)", " "),
