@@ -170,6 +170,13 @@ def middle(locator):
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
+def drag(page, start, way):
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(start[0] + way[0], start[1] + way[1], steps=5)
+    page.mouse.up()
+
+
 def drag_with_a_finger(page, start, end, steps=8):
     """Touches, as Chromium gets them from a screen."""
     session = page.context.new_cdp_session(page)

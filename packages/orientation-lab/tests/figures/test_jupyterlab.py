@@ -5,7 +5,7 @@ import re
 import urllib.request
 
 import pytest
-from figure_pages import CHANGES, FIGURES, KINDS
+from figure_pages import CHANGES, FIGURES, KINDS, drag
 from laboratory import PATIENCE, RUN_ALL, TOKEN
 from laboratory import laboratory as start_laboratory
 
@@ -161,10 +161,3 @@ def test_python_and_every_figure_move_together(browser, laboratory):
     kernel.client.stop_channels()
     context.close()
     assert faults == [] and asked == []
-
-
-def drag(page, start, way):
-    page.mouse.move(*start)
-    page.mouse.down()
-    page.mouse.move(start[0] + way[0], start[1] + way[1], steps=5)
-    page.mouse.up()

@@ -461,6 +461,8 @@ def test_after_enter_a_field_shows_what_the_figure_uses(open_figure):
     for key, end, said in (("End", "180", " 180° about"), ("Home", "-180", " \u2212180° about")):
         simple.get_by_role("slider").press(key)
         assert said in words(simple) and simple.get_by_role("slider").input_value() == end
+    simple.get_by_label("theta in degrees").fill("1")
+    assert simple.get_by_role("slider").get_attribute("aria-valuetext") == "theta, 1 degree"
     entry.fill("")
     assert entry.get_attribute("aria-invalid") == "true"
     entry.type("-0.25")

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from figure_pages import (  # noqa: F401
+    drag,
     drawing,
     front_end,
     middle,
@@ -227,11 +228,7 @@ def test_the_ghost_is_found_by_its_axes_alone(open_figure):
 
 def test_the_last_turn_follows_a_drag(open_figure):
     page = open_figure(ChallengeFigure(turns=[("z", 0.5)]))
-    x, y = middle(page.locator('[data-part="0"]'))
-    page.mouse.move(x, y)
-    page.mouse.down()
-    page.mouse.move(x + 40, y - 10, steps=4)
-    page.mouse.up()
+    drag(page, middle(page.locator('[data-part="0"]')), (40, -10))
     settle(page)
     assert page.get_by_label("Angle of the last turn in degrees").input_value() != "28.65"
     assert numbers(page, "Matrix of the box")[2] == pytest.approx([0, 0, 1])
@@ -261,11 +258,7 @@ def test_two_arrows_of_the_mirror_image_fit_and_all_of_the_copy(open_figure):
 
 def test_the_image_turns_under_the_finger(open_figure):
     page = open_figure(HandsFigure(image="copy"))
-    x, y = middle(page.locator('[data-part="image"]'))
-    page.mouse.move(x, y)
-    page.mouse.down()
-    page.mouse.move(x + 60, y, steps=3)
-    page.mouse.up()
+    drag(page, middle(page.locator('[data-part="image"]')), (60, 0))
     # To the right: about the upright of the screen, which leans from n z by the height of the eye.
     angles = numbers(page, "Angles between the arrows of the same name")
     assert angles[2] < 25 < angles[0]

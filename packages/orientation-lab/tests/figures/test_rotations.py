@@ -276,8 +276,12 @@ def test_the_text_moves_the_gimbal_and_the_reader_may_take_it(open_essay):
     assert violations(page) == []
     scroll_to(page, "three-are-enough")
     assert not page.evaluate("document.querySelector('.world').world.state.free")
-    canvas = page.locator(".world canvas")
-    canvas.focus()
+    # The right end of a motor's slider is not its left end.
+    motor = page.get_by_role("slider", name="first motor")
+    motor.press("End")
+    rest(page)
+    assert motor.get_attribute("aria-valuetext") == "first motor: 180 degrees"
+    page.locator(".world canvas").focus()
     page.keyboard.press("Home")
     rest(page)
     before = camera(page)

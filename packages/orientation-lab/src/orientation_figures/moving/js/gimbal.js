@@ -85,7 +85,7 @@ export function render({ model, el }) {
     write(margin, `${apart}°`);
     put(bar.firstChild, 'style', `width:${(apart / 0.9).toFixed(1)}%`);
     put(bar, 'aria-valuenow', apart);
-    put(bar, 'aria-valuetext', `${apart} degrees`);
+    put(bar, 'aria-valuetext', `${apart} degree${apart === '1' ? '' : 's'}`);
     sheet.draw(() => {
       picture(sheet, gimbal, close, lit);
       sheet.gripLine(PLACES.B(gimbal, 40), 'B');

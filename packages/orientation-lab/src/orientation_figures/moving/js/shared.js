@@ -353,7 +353,7 @@ export function slider({ symbol, name, unit: unitName = 'degrees', sign = '°', 
     show(value) {
       const shown = plain(value / factor, digits);
       if (range.value !== shown) range.value = shown;
-      put(range, 'aria-valuetext', `${name}, ${shown} ${unitName}`);
+      put(range, 'aria-valuetext', `${name}, ${shown} ${Math.abs(shown) === 1 ? unitName.replace(/s$/, '') : unitName}`);
       field.show(value / factor);
       write(rest, more(value));
     },

@@ -60,7 +60,7 @@ export function anglesNear(dcm, before) {
   return far(near[0]) <= far(near[1]) ? near[0] : near[1];
 }
 
-export const wrapped = (angle) => angle - 2 * PI * Math.round(angle / (2 * PI));
+export const wrapped = (angle) => angle - 2 * PI * Math.sign(angle) * Math.ceil(Math.abs(angle) / (2 * PI) - 0.500001);
 // Rotate a vector about an axis; the rows of the matrix are the rotated unit vectors.
 export const turned = (axis, angle, vector) => times(transpose(dcmFromAxisAngle(axis, angle)), vector);
 // Rotate a frame like an object in the room.

@@ -12,7 +12,7 @@ import { STOPS } from './stops.js';
 
 const PLACE = 'rotations';
 const DEGREES = 180 / Math.PI, PI = Math.PI;
-const say = (angle) => `${Math.round(angle * DEGREES)} degrees`;
+const say = (angle, whole = Math.round(angle * DEGREES)) => `${whole} degree${Math.abs(whole) === 1 ? '' : 's'}`;
 // What the reader can set: its name, minimum, maximum, step, units per unit of the state, and the sign of the unit.
 const DIALS = {
   psi: ['first motor', -180, 180, 1, DEGREES, '°', 0], theta: ['second motor', -180, 180, 1, DEGREES, '°', 1], phi: ['third motor', -180, 180, 1, DEGREES, '°', 2],
@@ -568,7 +568,7 @@ class World {
       const shown = String(Number((now * factor + zero).toFixed(factor === 1 ? 1 : 0)) + 0);
       if (document.activeElement !== field || !this.set.has(name)) field.value = shown;
       write(value, `${shown}${sign}`.replace('-', '\u2212'));
-      put(field, 'aria-valuetext', `${title}: ${shown} ${{ '°': 'degrees', '%': 'per cent', ' s': 'seconds' }[sign]}`);
+      put(field, 'aria-valuetext', `${title}: ${shown} ${{ '°': 'degrees', '%': 'per cent', ' s': 'seconds' }[sign].replace(Math.abs(shown) === 1 ? /s$/ : '', '')}`);
     }
   }
 
