@@ -23,6 +23,7 @@ from coursework.grading.judging.journal import Journal
 from coursework.grading.running import Running
 
 distributed = pytest.importorskip("distributed")
+clusters = pytest.importorskip("coursework.grading.execution.cluster")
 pytestmark = [
     pytest.mark.skipif(
         not sys.platform.startswith("linux"), reason="student code runs on Linux only"
@@ -261,10 +262,11 @@ def test_a_cluster_listens_to_those_alone_who_have_its_key(tmp_path, submissions
         with pytest.raises(OSError):
             distributed.Client(address.replace("tls:", "tcp:"), timeout="5s")
         running = functools.partial(Running, limits=LIMITS, scheduler=address)
-        other = tmp_path / "other"
-        cluster_keys.make_keys(other)
+        cluster_keys.make_keys(tmp_path / "other")
         with pytest.raises(ValueError, match="cannot reach a Dask scheduler"):
-            grade(submissions, tmp_path / "none", running=running(keys=other), **options)
+            grade(
+                submissions, tmp_path / "none", running=running(keys=tmp_path / "other"), **options
+            )
         grade(submissions, tmp_path / "there", running=running(keys=keys), **options)
     grade(submissions, tmp_path / "here", running=Running(limits=LIMITS), **options)
     one, two = ((tmp_path / place / "grades.csv").read_bytes() for place in ("there", "here"))
@@ -284,6 +286,8 @@ def test_a_cluster_without_keys_is_refused(tmp_path, address, keys, said):
     with pytest.raises(cluster_keys.NoKeys, match=said):
         cluster_keys.demand_keys(address, keys and tmp_path / keys)
     cluster_keys.demand_keys("tcp://127.0.0.1:8786", None)
+    # With keys, nothing is sent unencrypted, whatever the scheduler offers.
+    assert clusters._security(tmp_path).require_encryption
 
 
 def test_a_cluster_without_its_package_says_which(tmp_path, monkeypatch):

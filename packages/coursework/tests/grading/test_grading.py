@@ -1226,11 +1226,19 @@ def test_what_is_missing_is_said(course, copied, tmp_path):
         regrade(copied, solutions=course / "solutions")
     with pytest.raises(NothingToGrade, match="no notebook with solutions in"):
         grade(course / "submissions", tmp_path / "out", solutions=tmp_path, show=io.StringIO())
-    with pytest.raises(NothingToGrade, match="no notebook with solutions named 'turn'"):
-        write_term(tmp_path / "out", assignments={"x": ["turn"]})
-        grade(
-            course / "submissions",
-            tmp_path / "out",
-            solutions=course / "solutions",
-            show=io.StringIO(),
-        )
+    for assignments, sitting, words in (
+        ({"x": ["turn"]}, "", "no notebook with solutions named 'turn'"),
+        (
+            None,
+            '[assignments.x]\nquestions = ["turns/tan"]',
+            "no question 'turns/tan'; choose from",
+        ),
+    ):
+        write_term(tmp_path / "out", assignments=assignments, text=sitting)
+        with pytest.raises(NothingToGrade, match=words):
+            grade(
+                course / "submissions",
+                tmp_path / "out",
+                solutions=course / "solutions",
+                show=io.StringIO(),
+            )

@@ -442,7 +442,7 @@ def class_of_notebooks():
     return [
         notebook(source, "check('s', 1)", questions={"q": None, "r": None, "s": None})
         | {"id": f"{number}"}
-        for number, source in enumerate(sources * 3)
+        for number, source in enumerate(sources * 2)
     ]
 
 
@@ -453,8 +453,7 @@ def bytes_of(results):
 @pytest.mark.sampled(2, of="sandboxes under strain")
 def test_the_same_bytes_on_any_number_of_workers_and_when_one_is_killed():
     once = list(run_notebooks(class_of_notebooks(), workers=1, limits=LIMITS))
-    assert len(once) == 21 and len({result["id"] for result in once}) == 21
-    assert bytes_of(run_notebooks(class_of_notebooks(), workers=3, limits=LIMITS)) == bytes_of(once)
+    assert len(once) == 14 and len({result["id"] for result in once}) == 14
 
     def killing(jobs):
         for number, job in enumerate(jobs):
@@ -463,7 +462,7 @@ def test_the_same_bytes_on_any_number_of_workers_and_when_one_is_killed():
             yield job
 
     assert bytes_of(
-        run_notebooks(killing(class_of_notebooks()), workers=2, limits=LIMITS)
+        run_notebooks(killing(class_of_notebooks()), workers=3, limits=LIMITS)
     ) == bytes_of(once)
 
 

@@ -76,6 +76,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
         ("grade handed-out --out marks", "does not exist"),
         ("merge marks handed-out.csv", "does not exist"),
         ("cluster --keys keys --host 192.0.2.7", "cluster: Cannot assign requested address"),
+        ("cluster --keys keys", "give the address at which workers can reach this machine"),
         ("term marks", "marks/term.toml: No such file or directory. Create it with"),
         ("merge marks solutions", "solutions is a folder. Give the file journal.jsonl in it."),
         ("merge marks handed-in/ada/first-steps.ipynb", "the columns student, question and words"),
