@@ -302,6 +302,11 @@ SAID = [
         "AngleZ(deg) (if these are angles, name them: --columns 'roll=8 pitch=9 yaw=10')",
     ),
     (lines(lambda k: k, f"time (ms),{SIX},attempt,template", columns=9), "attempt, template"),
+    # The units are in a line of their own.
+    (
+        lines(lambda k: k, f"t,{SIX},volume\nms,dps,dps,dps,g,g,g,dB", columns=8),
+        "t [ms], in ms|volume [dB]",
+    ),
     (lines(lambda k: k, f"time (ms),{SIX},imuTemp", columns=8), "'temperature'"),
 ]
 

@@ -30,10 +30,12 @@ def test_what_is_dropped_is_judged_and_can_be_kept(tmp_path, monkeypatch):
         )
         assert "<b>Wrong</b>: offset of the magnetometer." in page
         assert page.count("<svg") >= 3 and "<1>" not in page and "<script" not in page
-    assert "offset of the magnetometer" in repr(found)
-    rows = re.search(r'download="corrected.csv" href="data:text/csv;base64,([^"]+)"', shown)
-    corrected = base64.b64decode(rows[1]).decode().splitlines()
-    assert corrected[0].endswith("qx,qy,qz,qw") and len(corrected) == 1 + len(found.examined.time)
+    rows = re.search(r'download="corrected.csv" href="data:text/csv;base64,([^"]+)"', shown)[1]
+    heading, *corrected = base64.b64decode(rows).decode().splitlines()
+    assert heading.endswith("qx,qy,qz,qw") and len(corrected) == len(found.examined.time)
+    # Of several files, the first need not be the recording.
+    (tmp_path / "dropped" / "about.txt").write_text("Dear all,\nI am here.\nBye\n", "utf8")
+    assert all("offset of the magnetometer" in repr(each) for each in (found, judged()))
 
 
 def test_what_cannot_be_judged_says_why_with_line_and_column(tmp_path):
@@ -41,12 +43,10 @@ def test_what_cannot_be_judged_says_why_with_line_and_column(tmp_path):
     assert "letter.txt cannot be judged" in repr(judged(tmp_path)) and "Line 2" in repr(
         judged(tmp_path)
     )
-    lines = as_text(simulate(2, poses=2)).splitlines()
     (tmp_path / "letter.txt").write_text(
         "\n".join(
             line if k % 9 else line.replace(",", ",x", 1)
-            # fmt: skip
-            for k, line in enumerate(lines)
+            for k, line in enumerate(as_text(simulate(2, poses=2)).splitlines())
         ),
         "utf8",
     )
