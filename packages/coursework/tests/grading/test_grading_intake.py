@@ -685,7 +685,7 @@ def test_a_mark_of_byte_order_is_read():
 
 def test_of_a_large_archive_little_is_held(box):
     """Only names and positions of files grow with the class; those of 100,000 fit any machine."""
-    number, data = 3_000, nbformat.writes(notebook(["check('turns/sum', 1)"]))
+    number, data = 1_000, nbformat.writes(notebook(["check('turns/sum', 1)"]))
     with zipfile.ZipFile(box, "w") as opened:
         for order in range(number):
             opened.writestr(f"student-{order:06}/turns.ipynb", data)
