@@ -359,8 +359,7 @@ def propagate_covariance(
     import numpy
 
     derivative = jacobian(conversion, value, *further, along=along)
-    count = derivative.shape[-1]
-    input_covariance = number_array(covariance, (count, count), "covariance")
+    input_covariance = number_array(covariance, (derivative.shape[-1],) * 2, "covariance")
     result: Array = derivative @ input_covariance @ derivative.swapaxes(-1, -2)
     largest = float(numpy.sqrt(numpy.max(numpy.diagonal(result, axis1=-2, axis2=-1), initial=0)))
     if largest > LARGE:

@@ -336,12 +336,12 @@ def smooth(predictions: Sequence[Prediction], last: FilterState) -> FilterState:
         turned = rotation_vector_from_dcm(later.dcm @ after.dcm.swapaxes(-1, -2))
         x = numpy.concatenate([turned, later.bias - after.bias], axis=-1)
         x = (gain @ x[..., None])[..., 0]
-        change = later.covariance - after.covariance
         states.append(
             FilterState(
                 dcm_from_rotation_vector(x[..., :3]) @ before.dcm,
                 before.bias + x[..., 3:],
-                before.covariance + gain @ change @ gain.swapaxes(-1, -2),
+                before.covariance
+                + gain @ (later.covariance - after.covariance) @ gain.swapaxes(-1, -2),
             )
         )
     return FilterState(*(numpy.stack(each[::-1]) for each in zip(*states, strict=True)))

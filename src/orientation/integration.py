@@ -52,6 +52,8 @@ def turns_from_angular_velocity(
 
     Raises
     ------
+    TypeError
+        If ``angular_velocity`` is not a function.
     ValueError
         If the order is not one of these, or the function returns another shape or numbers that are
         not finite.
@@ -70,6 +72,11 @@ def turns_from_angular_velocity(
     """
     import numpy
 
+    if not callable(angular_velocity):
+        raise TypeError(
+            "angular_velocity must be a function of the times. For the samples of a gyroscope, "
+            "give dcms_after_turns each sample times the time to the next"
+        )
     if order not in ORDERS:
         raise ValueError(f"order must be 1, 2 or 4, not {order!r}")
     times = number_array(times, (), "times")

@@ -222,10 +222,13 @@ def test_a_constant_angular_velocity_is_integrated_exactly_by_one_step():
 def test_steps_refuse_what_they_cannot_read():
     with pytest.raises(ValueError, match="order must be 1, 2 or 4, not 3"):
         turns_from_angular_velocity(tumbling, [0, 1], 3)
-    with pytest.raises(ValueError, match=r"shape \(2,\)|shape \(3, 1\)"):
-        turns_from_angular_velocity(lambda t: np.ones((len(t), 1)), [0, 1, 2, 3])
-    with pytest.raises(ValueError, match="for 3 times"):
-        turns_from_angular_velocity(lambda t: np.ones((5, 3)), [0, 1, 2, 3])
+    for rates, words in (
+        (lambda t: np.ones((len(t), 1)), r"shape \(2,\)|shape \(3, 1\)"),
+        (lambda t: np.ones((5, 3)), "for 3 times"),
+        (np.ones((4, 3)), "must be a function of the times. For the samples of a gyroscope"),
+    ):
+        with pytest.raises((ValueError, TypeError), match=words):
+            turns_from_angular_velocity(rates, [0, 1, 2, 3])
     for times in ([0], [[0, 1]]):
         with pytest.raises(ValueError, match="^times must have shape .* boundaries of one or more"):
             turns_from_angular_velocity(tumbling, times)
