@@ -169,6 +169,22 @@ def changed(old, new, text=QUESTION):
             "'x' is tried from 1 to inf, but a range must be at most 10000 wide",
         ),
         (
+            {"before": [("code", changed("[1, 2, 3]", "'123'", DRAWN))], "text": "Add {{n}}."},
+            "trial/one: give n a list of values, or a function such as",
+        ),
+        (
+            {"before": [("code", changed("[1, 2, 3]", "[]", DRAWN))], "text": "Add {{n}}."},
+            "chance.randint(1, 6)`, not []",
+        ),
+        (
+            {"before": [("code", changed("=3", "='3'", DRAWN))], "text": "Add {{n}}."},
+            "`count` must be a whole number, at least 1, not '3'",
+        ),
+        (
+            {"before": [("code", "drawn = draw('trial/one', n=[1])")], "text": "Add {{n}}."},
+            "call `draw` between `### BEGIN VARIANTS`",
+        ),
+        (
             {"before": [("code", DRAWN)], "text": "Add {{m}}."},
             "its text shows {{m}}, which you have not drawn; you have drawn n.",
         ),

@@ -114,6 +114,7 @@ def test_one_notebook_is_released_alone(tmp_path):
         # Windows' editor may put a byte order mark first.
         ({"course.toml": "\ufefftitel = 'Statics'"}, "course.toml: .*but not 'titel'"),
         ({"course.toml": "title = "}, "course.toml: .*Invalid value"),
+        ({"course.toml": 'sealed = "C:\\Users"'}, "write / in paths"),
         (
             # Git leaves this after a merge with conflicts.
             {"course.toml": "", "solutions/trial.ipynb": "<<<<<<< HEAD"},

@@ -108,7 +108,10 @@ def _read(path: Path) -> Course:
     try:
         said = tomllib.loads(path.read_text("utf-8-sig"))
     except ValueError as error:
-        raise AuthorError(f"{path}: {error}") from None
+        raise AuthorError(
+            f"{path}: {error}. Put text in quotation marks, write / in paths, and save the file in "
+            "UTF-8."
+        ) from None
     if said.get("variants", BY_NAME) != BY_NAME:
         raise AuthorError(
             f'{path}: set variants = "{BY_NAME}" or leave it out; it is {said["variants"]!r}.'
@@ -123,7 +126,6 @@ def _read(path: Path) -> Course:
             "strings) and roster (true or false)"
             + (f", but not {unknown[0]!r}." if unknown else ".")
         )
-    places = {name: path.parent / said.get(name, default) for name, default in DEFAULTS.items()}
     others = {name: said.get(name, "") for name in TEXTS}
     for name in ("chapter", "solution"):
         if others[name] and not re.fullmatch(
@@ -134,5 +136,9 @@ def _read(path: Path) -> Course:
                 f"not {others[name]!r}."
             )
     return Course(
-        path.parent, said.get("title", path.parent.name), **places, **others, roster=roster
+        path.parent,
+        said.get("title", path.parent.name),
+        **{name: path.parent / said.get(name, default) for name, default in DEFAULTS.items()},
+        **others,
+        roster=roster,
     )

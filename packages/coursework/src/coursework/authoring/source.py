@@ -17,7 +17,7 @@ import os
 import re
 import sys
 import textwrap
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sized
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -255,7 +255,32 @@ class _Recorder:
         picture: Callable[..., Drawing] | None = None,
         **pools: Pool,
     ) -> Given:
-        """Draw the parameters of this variant; a question with fewer variants has its first."""
+        """Draw the parameters of this variant; a question with fewer variants has its first.
+
+        Raises
+        ------
+        AuthorError
+            The call is at the wrong place, or an argument has the wrong form.
+        """
+        wrong = (
+            "call `draw` between `### BEGIN VARIANTS` and `### END VARIANTS`, in a cell above the "
+            "text of the question"
+            if name not in self.texts
+            else f"`count` must be a whole number, at least 1, not {count!r}"
+            if not isinstance(count, int) or count < 1
+            else next(
+                (
+                    f"give {what} a list of values, or a function such as `lambda chance: "
+                    f"chance.randint(1, 6)`, not {pool!r}"
+                    for what, pool in pools.items()
+                    if not callable(pool)
+                    and (isinstance(pool, str) or not isinstance(pool, Sized) or len(pool) == 0)
+                ),
+                "",
+            )
+        )
+        if wrong:
+            raise author.AuthorError(f"{name}: {wrong}.")
         rule = Rule(name, count, pools, where, picture).without_what_is_ruled_out()
         given = rule.parameters(self.variant if self.variant < rule.count else 0, self.edition)
         self.rules[name], self.given[name] = rule, given

@@ -466,8 +466,7 @@ def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> 
         or digest_of_answer(record, one.question) != one.answer
     ]
     if foreign:
-        students = dict.fromkeys(decision.student for decision in foreign)
-        whose = ", ".join(in_a_line(name, 60) for name in students)
+        whose = ", ".join(dict.fromkeys(in_a_line(one.student, 60) for one in foreign))
         print(
             f"  We ignored {len(foreign)} of them, about answers missing from this folder "
             f"({whose})."
@@ -521,6 +520,9 @@ def export(
 
     if not (lms or feedback or nbgrader):
         sys.exit("coursework export: choose --lms, --feedback or --nbgrader.")
+    files = [Path(file).resolve() for file in (lms, feedback, nbgrader) if file]
+    if len(set(files)) < len(files):
+        sys.exit("coursework export: give --lms, --feedback and --nbgrader different files.")
     store, book = Store(out), lms or ""
     target = str(gradebooks.place_of_filled(lms, filled)) if lms else ""
     for one, column in gradebooks.columns(lms, store, assignment) if lms else ():

@@ -764,9 +764,10 @@ def write_nbgrader(path: str | Path, marks: Marks) -> str:
             pending += 1
         elif given or (result.state == "missing" and result.due):
             raw = given.points - result.held_back if given else 0
-            worth, lost = given.worth if given else result.worth, round(raw * result.penalty, 4)
-            after = round(raw * (1 - result.penalty), 4)
-            rows.append((assignment, "", "", student, "", "", "", raw, lost, after, worth))
+            lost, score = (round(raw * part, 4) for part in (result.penalty, 1 - result.penalty))
+            rows.append(
+                (assignment, "", "", student, "", "", "", raw, lost, score, (given or result).worth)
+            )
     write(path, table(NBGRADER, rows), private=True)
     return (
         f"{number_of(len(rows), 'mark')}: {path}. "

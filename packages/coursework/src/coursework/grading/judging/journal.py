@@ -891,8 +891,12 @@ def _is_cut(line: bytes) -> bool:
 
 def _line(one: Event) -> bytes:
     said = {"event": type(one).__name__.lower(), **one.as_json()}
-    line = json.dumps(said | {"sum": _sum(said)}, ensure_ascii=False)
-    return line.encode("utf8", "backslashreplace") + b"\n"
+    return (
+        json.dumps(said | {"sum": _sum(said)}, ensure_ascii=False).encode(
+            "utf8", "backslashreplace"
+        )
+        + b"\n"
+    )
 
 
 def _sum(said: Mapping[str, Json]) -> str:
@@ -916,8 +920,9 @@ def _event(line: str) -> Event:
 
 def _table(path: Path) -> tuple[set[str], list[Row]]:
     header, lines = cells_in(path)
-    empty = dict.fromkeys(header, "")
-    return set(header), [(number, empty | dict(zip(header, cells))) for number, cells in lines]
+    return set(header), [
+        (number, dict.fromkeys(header, "") | dict(zip(header, cells))) for number, cells in lines
+    ]
 
 
 def _credit(text: str, where: str) -> float | None:

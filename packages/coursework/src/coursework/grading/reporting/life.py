@@ -54,14 +54,13 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         f"  does not count: {in_a_line(other.file, 120)}, since {other.why}"
         for other in (record.superseded if record else ())
     ]
-    now = datetime.datetime.now(datetime.UTC)
     result = of_term.result_of(
         student,
         assignment,
         record,
         term,
         {assignment: 0},
-        now,
+        datetime.datetime.now(datetime.UTC),
         refused={file.student for file in refused},
     )
     due = f"due {result.due:%Y-%m-%d %H:%M %Z}" if result.due else "no due date"
