@@ -35,6 +35,7 @@ np.array([1.0, 2, 3])
 np.array([[1, 2], [3, 4]]) + 1
 np.array([1e-5, 2.0, -3e7])
 np.array([1e-20, 1.0])
+[int(v[0] > 0), float(v[0] > 0), int(v[0] < 0)]
 np.array([0.1, 0.25, -1/3])
 np.array([np.nan, 1.0, -np.inf])
 np.array([True, False])
