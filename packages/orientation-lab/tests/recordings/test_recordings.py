@@ -57,19 +57,25 @@ def test_times_and_units():
         recording = getattr(recordings, name)()
         assert np.median(np.diff(recording.time)) == pytest.approx(1 / rate, rel=0.02)
         assert 0.95 < np.median(np.linalg.norm(recording.specific_force, axis=1)) < 1.05
-        assert len(recording.quaternion) == len(recording.quaternion_time)
-        assert recording.quaternion_time[0] >= recording.time[0] - 0.03
+        assert len(recording.quaternion) == len(recording.quaternion_time) and (
+            recording.quaternion_time[0] >= recording.time[0] - 0.03
+        )
     thigh, shank = recordings.walking_leg()
     assert len(thigh.time) == len(shank.time) == 14 * 120
+    # A packet that comes after a sample has its time.
+    packets = recordings.table("x_imu_sensors")[:, 0]
+    assert np.allclose(recordings.x_imu_time(packets + 0.5), recordings.x_imu().time)
 
 
 def test_what_the_files_hold_is_licensed():
     from importlib import resources
 
-    licence = resources.files(recordings).joinpath("data", "LICENSE.txt").read_text("utf8")
-    assert "Thomas Haslwanter" in licence and "Redistribution" in licence
-    licence = resources.files(recordings).joinpath("data", "LICENSE-stars.txt").read_text("utf8")
-    assert "Brandon Rhodes" in licence and "MIT" in licence
+    data = resources.files(recordings) / "data"
+    for name, words in (
+        ("LICENSE.txt", ("Thomas Haslwanter", "Redistribution")),
+        ("LICENSE-stars.txt", ("Brandon Rhodes", "MIT")),
+    ):
+        assert all(word in (data / name).read_text("utf8") for word in words)
 
 
 # Hours, minutes and seconds, degrees, minutes and seconds, as tables of the

@@ -367,6 +367,7 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
         (b"\0\1\2" * 99, "not a text file"),
         (b"Dear all,\nI am here.\nBye\n", "not a table"),
         (b"[1, 2", "line 1"),
+        (b"t,ax,ay,az\n" + (b"1,2,3,4\n" * 5 + b"1,2,inf,4\n") * 3, "3 of 18 rows cannot be read"),
         (b"ax:0.1 ay:0.2 az:0.3\nmx:0 my:20 mz:30\n" * 9, "not a table"),
         (b"ax:3,5 ay:3,25 az:3,75\n" * 9, "not a table"),
         (b"x:1 y:2 z:3 Gyro x:4 y:5 z:6\n" * 9, "not a table"),
