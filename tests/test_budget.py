@@ -12,9 +12,9 @@ from places import REPOSITORY
 #: A folder of CONTRIBUTING's table, and the numbers in its line: statements, those of tests, and
 #: lines of JavaScript.
 ROW = re.compile(r"^\| `([^`]+)` \| ([\d,]+) \| ([\d,]+) \| ([\d,]+) \|", re.M)
+ROWS = ROW.findall((REPOSITORY / "CONTRIBUTING.md").read_text("utf8"))
 ALLOWED = {
-    folder: tuple(int(number.replace(",", "")) for number in numbers)
-    for folder, *numbers in ROW.findall((REPOSITORY / "CONTRIBUTING.md").read_text("utf8"))
+    folder: tuple(int(number.replace(",", "")) for number in numbers) for folder, *numbers in ROWS
 }
 
 
@@ -42,8 +42,9 @@ def counted():
             tests = {"tests", "examples"} & set(parts) or parts[-1].startswith(
                 ("test_", "conftest")
             )
-            kind = "tests" if tests else "statements"
-            counts[folder][kind] += statements((REPOSITORY / name).read_text("utf8"))
+            counts[folder]["tests" if tests else "statements"] += statements(
+                (REPOSITORY / name).read_text("utf8")
+            )
         elif name.endswith((".js", ".mjs")):
             counts[folder]["lines"] += (REPOSITORY / name).read_text("utf8").count("\n")
     return counts
@@ -59,6 +60,8 @@ def test_a_package_keeps_to_its_budget(folder):
     )
 
 
-def test_every_package_has_a_budget():
+def test_every_package_has_one_budget():
     packages = {f"packages/{path.name}" for path in (REPOSITORY / "packages").iterdir()}
-    assert packages | {"src/orientation", "tests", "tools"} == set(ALLOWED)
+    assert sorted(packages | {"src/orientation", "tests", "tools"}) == sorted(
+        folder for folder, *_ in ROWS
+    )
