@@ -10,7 +10,7 @@ import zipfile
 from contextlib import suppress
 from functools import cache
 from html import unescape
-from urllib.parse import unquote, urldefrag, urljoin
+from urllib.parse import unquote, urldefrag, urljoin, urlsplit
 
 import numpy as np
 import pytest
@@ -116,7 +116,7 @@ class Visit:
         self.context = browser.new_context(color_scheme=theme, viewport=viewport, bypass_csp=False)
         self.context.add_init_script(WATCH_SHIFTS)
         self.page = self.context.new_page()
-        self.faults, self.responses = [], {}
+        self.faults, self.fetched = [], set()
         self.site = site
         self.page.on("console", lambda m: m.type == "error" and self.faults.append(m.text))
         self.page.on("pageerror", lambda error: self.faults.append(str(error)))
@@ -152,15 +152,17 @@ class Visit:
     def note_response(self, request):
         if request.url.startswith("data:"):
             return
-        response = self.responses[request.url] = request.response()
-        if response.status >= 400:
-            self.faults.append(f"{response.status}: {request.url}")
+        self.fetched.add(request.url)
+        if (status := request.response().status) >= 400:
+            self.faults.append(f"{status}: {request.url}")
 
     def weights(self):
-        """Return the bytes over the wire, by address."""
+        """Return the bytes over the wire, by path; of the files, as a reload takes what came."""
         return {
-            url: len(gzip.compress(response.body(), 6))
-            for url, response in list(self.responses.items())
+            path: len(gzip.compress((HTML / unquote(path)).read_bytes(), 6))
+            for path in {
+                urlsplit(url).path[1:] for url in self.fetched if url.startswith(self.site)
+            }
         }
 
     def __enter__(self):
