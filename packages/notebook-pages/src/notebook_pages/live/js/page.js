@@ -106,18 +106,18 @@
       throw Object.assign(error, { isLost: true });
     }
   };
-  // Explain an error. A script is missing if the page was open while its files were replaced by those of a newer
-  // edition.
+  // Explain an error. A script is missing if a newer edition has replaced the files of a page that was open.
   tools.explain = async (error, what = "That did not work") => {
     if (!error.isLost) return tools.say(`${what}: ${error.message}.`);
-    const now = await fetch(location.pathname, { cache: "no-cache", signal: AbortSignal.timeout(5000) }).then((answer) => answer.ok && answer.text(), () => "");
+    const asked = (method) => fetch(location.pathname, { method, cache: "no-cache", signal: AbortSignal.timeout(5000) });
+    const now = await asked("GET").then((answer) => answer.ok && answer.text(), () => "");
     if (now && !now.includes(data.scripts.split("/").at(-2))) {
       return tools.ask("This page has been updated since you opened it. Reload it to run its code. What you wrote here is kept.", {
         "Reload": () => location.reload(),
       });
     }
-    // A page that is stored in the browser answers without a network.
-    if (!now || !navigator.onLine) return tools.say(`${what}: ${now ? "this browser keeps the pages without Python, and there is no network" : "the server of these pages does not answer"}. Try again when you have a network.`);
+    // A page that is stored in the browser comes without a network, but no answer to HEAD is stored.
+    if (!now || !(await asked("HEAD").then(() => true, () => false))) return tools.say(`${what}: the server of these pages does not answer${now ? ", and this browser keeps them without Python" : ""}. Try again when you have a network.`);
     tools.say(`${what}: ${error.message}.`);
   };
   const open = () => (page ??= script("live.js").then(({ open }) => open({ data, boxes, bar: tools })));
