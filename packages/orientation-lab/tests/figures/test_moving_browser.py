@@ -462,6 +462,7 @@ def test_after_enter_a_field_shows_what_the_figure_uses(open_figure):
         simple.get_by_role("slider").press(key)
         assert said in words(simple) and simple.get_by_role("slider").input_value() == end
     simple.get_by_label("theta in degrees").fill("1")
+    settle(simple)
     assert simple.get_by_role("slider").get_attribute("aria-valuetext") == "theta, 1 degree"
     entry.fill("")
     assert entry.get_attribute("aria-invalid") == "true"
