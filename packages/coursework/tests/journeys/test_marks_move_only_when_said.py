@@ -175,10 +175,13 @@ def test_a_column_is_filled_with_one_assignment(tmp_path):
     (course.marks / "term.toml").write_text(
         'time-zone = "UTC"\n[assignments.hw1]\n[assignments.hw2]\ncolumn = "hw 2"\n'
     )
-    # The pages must not replace the gradebook.
-    assert "different files" in course.export(
-        book, "--feedback", book, fails=True
-    ) and "of feedback: to send" in course.export(book, "--feedback", "to send/feedback.zip")
+    # The pages must replace neither the gradebook nor its filled copy.
+    assert (
+        "different files" in course.export(book, "--feedback", book, fails=True)
+        and "different files"
+        in course.export(book, "--filled", "new.csv", "--feedback", "new.csv", fails=True)
+        and "of feedback: to send" in course.export(book, "--feedback", "to send/feedback.zip")
+    )
     assert [course.column(book, name)["ada"] for name in ("HW 1 (6)", "HW 2 (7)")] == ["", "8"]
     # Its column has been renamed, and another column is the only one that could be meant.
     said = course.export(course.canvas_book("Essay (9)", name="renamed.csv"), fails=True)

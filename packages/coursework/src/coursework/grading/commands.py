@@ -520,11 +520,17 @@ def export(
 
     if not (lms or feedback or nbgrader):
         sys.exit("coursework export: choose --lms, --feedback or --nbgrader.")
-    files = [Path(file).resolve() for file in (lms, feedback, nbgrader) if file]
-    if len(set(files)) < len(files):
-        sys.exit("coursework export: give --lms, --feedback and --nbgrader different files.")
     store, book = Store(out), lms or ""
     target = str(gradebooks.place_of_filled(lms, filled)) if lms else ""
+    files = [
+        *{Path(file).resolve() for file in (lms, target) if file},
+        *(Path(file).resolve() for file in (feedback, nbgrader) if file),
+    ]
+    if len(set(files)) < len(files):
+        sys.exit(
+            "coursework export: give --feedback and --nbgrader different files, which are neither "
+            "the gradebook nor its filled copy."
+        )
     for one, column in gradebooks.columns(lms, store, assignment) if lms else ():
         marks = gradebooks.Marks(store, one, as_of=as_of)
         print(*gradebooks.fill(book, marks, column, target, overwrite, dry_run), sep="\n")
