@@ -262,25 +262,22 @@ class _Recorder:
         AuthorError
             The call is at the wrong place, or an argument has the wrong form.
         """
-        wrong = (
+        checks = {
             "call `draw` between `### BEGIN VARIANTS` and `### END VARIANTS`, in a cell above the "
-            "text of the question"
-            if name not in self.texts
-            else f"`count` must be a whole number, at least 1, not {count!r}"
-            if not isinstance(count, int) or count < 1
-            else next(
-                (
-                    f"give {what} a list of values, or a function such as `lambda chance: "
-                    f"chance.randint(1, 6)`, not {pool!r}"
-                    for what, pool in pools.items()
-                    if not callable(pool)
-                    and (isinstance(pool, str) or not isinstance(pool, Sized) or len(pool) == 0)
-                ),
-                "",
+            "text of the question": name in self.texts,
+            f"`count` must be a whole number, at least 1, not {count!r}": isinstance(count, int)
+            and count >= 1,
+            **{
+                f"give {what} a list of values, or a function such as `lambda chance: "
+                f"chance.randint(1, 6)`, not {pool!r}": callable(pool)
+                or (isinstance(pool, Sized) and not isinstance(pool, str) and len(pool) > 0)
+                for what, pool in pools.items()
+            },
+        }
+        if not all(checks.values()):
+            raise author.AuthorError(
+                f"{name}: {next(fix for fix, held in checks.items() if not held)}."
             )
-        )
-        if wrong:
-            raise author.AuthorError(f"{name}: {wrong}.")
         rule = Rule(name, count, pools, where, picture).without_what_is_ruled_out()
         given = rule.parameters(self.variant if self.variant < rule.count else 0, self.edition)
         self.rules[name], self.given[name] = rule, given

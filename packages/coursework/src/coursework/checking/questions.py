@@ -432,9 +432,9 @@ def _compare(
     locker = find(fingerprint)
     known = _known_in(question, reading, locker)
     # Only the direction of an axis is compared, so its length may be wrong beside a known mistake.
-    compared = len(canonical(question, reading)) == sum(map(len, reading.numbers))
     mistaken = known is not None and known.outcome != "correct"
-    wrong_form = None if mistaken and compared else fault(question, reading)
+    compared = mistaken and len(canonical(question, reading)) == sum(map(len, reading.numbers))
+    wrong_form = None if compared else fault(question, reading)
     if wrong_form and (known is None or wrong_form.note in ALWAYS_WRONG):
         # Rounding errors are not reported as faults of geometry.
         explanation = (

@@ -920,21 +920,18 @@ def _event(line: str) -> Event:
 
 def _table(path: Path) -> tuple[set[str], list[Row]]:
     header, lines = cells_in(path)
-    return set(header), [
-        (number, dict.fromkeys(header, "") | dict(zip(header, cells))) for number, cells in lines
-    ]
+    empty = dict.fromkeys(header, "")
+    return set(header), [(number, empty | dict(zip(header, cells))) for number, cells in lines]
 
 
 def _credit(text: str, where: str) -> float | None:
     if not text:
         return None
-    try:
-        # Points, such as "3 of 4", become a share. A spreadsheet would make a date of "3/4".
+    # Points, such as "3 of 4", become a share. A spreadsheet would make a date of "3/4".
+    with contextlib.suppress(ValueError, ZeroDivisionError):
         points, _, worth = text.replace(",", ".").replace(" of ", "/").partition("/")
         if 0 <= (share := float(points) / float(worth or 1)) <= 1:
             return share
-    except (ValueError, ZeroDivisionError):
-        pass
     raise ValueError(
         f"{where}: {text!r} is neither a credit from 0 to 1, nor points such as '3 of 4', nor the "
         "letter of a box to tick."

@@ -185,12 +185,14 @@ class Roster:
                     "The roster has no column `github`, and a GitHub name alone proves nothing, "
                     "since anybody can choose one."
                 )
-        claimed = [(kind, _same(kind, value)) for kind, value in keys]
+        claimed = {
+            (kind, same.lstrip("0")): same
+            for kind, same in ((kind, _same(kind, value)) for kind, value in keys)
+        }
         near = [
             value
             for kind, value in sorted(self.index)
-            if (kind, value) not in claimed
-            and (kind, value.lstrip("0")) in [(kind, claim.lstrip("0")) for kind, claim in claimed]
+            if claimed.get((kind, value.lstrip("0")), value) != value
         ]
         return None, "Nobody in the roster matches." + (
             f" It has {near[0]!r}: a spreadsheet may have removed zeros in front of the IDs."
