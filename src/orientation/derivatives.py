@@ -28,8 +28,10 @@ from .numbers_and_symbols import (
     Variable,
     array_functions,
     columns_of,
+    covariance_array,
     demand,
     is_symbolic,
+    item_in_words,
     number_array,
     symbol_components,
 )
@@ -191,13 +193,15 @@ class _Numbers(Variable):
         columns = [column for rows in flat for column in rows.T]
         if guard:
             demand(guard, columns, batch)
-        components: list[Dual] = []
-        for (_, value, item), rows in zip(arguments, flat):
-            components += (
+        components = [
+            entry
+            for (_, value, item), rows in zip(arguments, flat)
+            for entry in (
                 self._with_slopes(rows, item)
                 if isinstance(value, _Numbers)
                 else [Dual(column, numpy.zeros((1, len(column)))) for column in rows.T]
             )
+        ]
         count = max(len(entry.slopes) for entry in components)
         with numpy.errstate(divide="ignore", invalid="ignore"):
             # No type can express that a formula works with anything that has these operations.
@@ -213,12 +217,9 @@ class _Numbers(Variable):
         derivative = numpy.stack(slopes, axis=-1)
         steep = ~(numpy.abs(derivative) < STEEP).all(axis=(0, -1))
         if steep.any():
-            worst = int(numpy.argmax(steep))
-            where = (
-                f" (item {[int(k) for k in numpy.unravel_index(worst, batch)]})" if batch else ""
-            )
             raise ValueError(
-                f"the conversion has no derivative at {arguments[0][0]}{where}: a small change in "
+                f"the conversion has no derivative at {arguments[0][0]}"
+                f"{item_in_words(int(numpy.argmax(steep)), batch)}: a small change in "
                 "the input makes a large one in the result, as with Euler angles at gimbal lock"
             )
         return derivative.reshape(count, *batch, *shape)
@@ -345,7 +346,7 @@ def propagate_covariance(
     Raises
     ------
     ValueError
-        As `jacobian`, and if the shapes do not fit.
+        As `jacobian`, and if the shapes do not fit or the matrix cannot be a covariance.
 
     Examples
     --------
@@ -359,7 +360,7 @@ def propagate_covariance(
     import numpy
 
     derivative = jacobian(conversion, value, *further, along=along)
-    input_covariance = number_array(covariance, (derivative.shape[-1],) * 2, "covariance")
+    input_covariance = covariance_array(covariance, derivative.shape[-1])
     result: Array = derivative @ input_covariance @ derivative.swapaxes(-1, -2)
     largest = float(numpy.sqrt(numpy.max(numpy.diagonal(result, axis1=-2, axis2=-1), initial=0)))
     if largest > LARGE:

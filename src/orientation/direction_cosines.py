@@ -12,6 +12,7 @@ from .numbers_and_symbols import (
     evaluate,
     evaluate_numbers,
     is_symbolic,
+    item_in_words,
     number_array,
     symbol_components,
 )
@@ -288,7 +289,7 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
     excess = gap - TOLERANCE * scales[..., 0]
     if numpy.any(excess <= 0):
         worst = numpy.unravel_index(numpy.argmin(excess), gap.shape)
-        where = f" (item {[int(k) for k in worst]})" if worst else ""
+        where = item_in_words(int(numpy.argmin(excess)), gap.shape)
         if scales[worst][0] == 0:
             raise ValueError(
                 f"every entry of matrix{where} is zero, so all orientations are equally near to it"

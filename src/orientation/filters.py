@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from .direction_cosines import check_dcm
-from .numbers_and_symbols import number_array
+from .numbers_and_symbols import covariance_array, number_array
 from .observations import unit_directions
 from .rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
 
@@ -139,8 +139,7 @@ class MultiplicativeKalmanFilter:
         check_dcm(self.dcm)
         batch = self.dcm.shape[:-2]
         self.bias = numpy.zeros((*batch, 3))
-        covariance = number_array(covariance, (6, 6), "covariance")
-        self.covariance = numpy.broadcast_to(covariance, (*batch, 6, 6)).copy()
+        self.covariance = numpy.broadcast_to(covariance_array(covariance, 6), (*batch, 6, 6)).copy()
         self.gyroscope_noise = number_array(gyroscope_noise, (), "gyroscope_noise")
         self.bias_noise = number_array(bias_noise, (), "bias_noise")
 
@@ -250,8 +249,7 @@ class MultiplicativeKalmanFilter:
         check_dcm(measured)
         # 6 and 7, for an orientation
         difference = rotation_vector_from_dcm(measured @ self.dcm.swapaxes(-1, -2))
-        noise = number_array(covariance, (3, 3), "covariance")
-        return self._correct(difference, numpy.eye(3), noise, gate)
+        return self._correct(difference, numpy.eye(3), covariance_array(covariance, 3), gate)
 
     def _correct(self, nu: Array, slope: Array, R: Array, gate: float) -> Innovation:
         import numpy

@@ -47,8 +47,6 @@ class _AxisTurn(NamedTuple):
         return self._replace(angle=-self.angle)
 
     def subs(self, values: Mapping[Symbolic, object]) -> _AxisTurn:
-        if not self.is_symbolic():
-            return self
         import sympy
 
         return self._replace(angle=sympy.sympify(self.angle).subs(values))
@@ -79,8 +77,6 @@ class _MatrixTurn(NamedTuple):
         return _MatrixTurn(transposed, self.words + r",\ \text{back}")
 
     def subs(self, values: Mapping[Symbolic, object]) -> _MatrixTurn:
-        if not self.is_symbolic():
-            return self
         import sympy
 
         return self._replace(matrix=sympy.Matrix(self.matrix).subs(values))
@@ -214,13 +210,15 @@ class Frames:
         dcm_from_space_fixed(angles, sequence)
         own = _own(angles, (3,), "angles", is_symbolic(angles))
         # Rotations about fixed axes are body fixed rotations in reverse order.
-        turns = zip(sequence[::-1], own[::-1])
-        return self._with(frame, reference, *(_AxisTurn(axis, angle) for axis, angle in turns))
+        return self._with(frame, reference, *map(_AxisTurn, sequence[::-1], own[::-1]))
 
     def orient_rotation_vector(self, frame: str, reference: str, vector: Values) -> Frames:
         """Return frames with ``frame`` rotated in ``reference`` by a rotation vector in radians."""
-        words = r"\text{rotation vector}"
-        return self._with(frame, reference, _MatrixTurn(dcm_from_rotation_vector(vector), words))
+        return self._with(
+            frame,
+            reference,
+            _MatrixTurn(dcm_from_rotation_vector(vector), r"\text{rotation vector}"),
+        )
 
     def orient_scipy_rotation(self, frame: str, reference: str, rotation: Rotation) -> Frames:
         """Return frames with ``frame`` rotated in ``reference`` by a SciPy ``Rotation``.
@@ -228,8 +226,11 @@ class Frames:
         It converts components along ``frame`` to components along ``reference``, as for
         `orientation.dcm_from_scipy_rotation`.
         """
-        dcm = dcm_from_scipy_rotation(rotation)
-        return self._with(frame, reference, _MatrixTurn(dcm, r"\text{SciPy rotation}"))
+        return self._with(
+            frame,
+            reference,
+            _MatrixTurn(dcm_from_scipy_rotation(rotation), r"\text{SciPy rotation}"),
+        )
 
     def without(self, frame: str, reference: str) -> Frames:
         """Return frames without the orientation that connects these two, to give another one.
@@ -251,7 +252,11 @@ class Frames:
     def subs(self, values: Mapping[Symbolic, object]) -> Frames:
         """Return frames with values in place of symbols, as SymPy's ``subs`` does."""
         substituted = (
-            edge._replace(turns=tuple(turn.subs(values) for turn in edge.turns))
+            edge._replace(
+                turns=tuple(
+                    turn.subs(values) if turn.is_symbolic() else turn for turn in edge.turns
+                )
+            )
             for edge in self._edges
         )
         return functools.reduce(Frames._and, substituted, Frames())

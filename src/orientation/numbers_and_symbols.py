@@ -47,6 +47,9 @@ TOLERANCE = 1e-9
 # number, and the largest deviation of their numbers in units of it.
 PRECISIONS = {"float16": 2.0**-10, "float32": 2.0**-23}
 ROUNDINGS = 32
+# The largest fault of a covariance that counts as rounding, as in one that was printed with three
+# digits, in units of the standard deviations.
+COVARIANCE_SLACK = 1e-3
 
 #: Number of items of a batch to work on together. Their components then stay in the cache, and the
 #: memory they free is too small to be returned to the system and fetched again.
@@ -163,9 +166,9 @@ def _evaluate_at_a_glance(
         components += entries
     else:
         return _evaluate_item(formula, shape, components, guard)
-    if not all(_is_batch(value, item) for _, value, item in arguments):
-        return None
-    for name, value, _ in arguments:
+    for name, value, item in arguments:
+        if not _is_batch(value, item):
+            return None
         _demand_finite_array(value, name)
     return _evaluate_batch(formula, shape, arguments, guard)
 
@@ -404,9 +407,17 @@ def demand(
         size = guard.excess(array_functions(), *components[: guard.size])
     if numpy.count_nonzero(size <= tolerance) < len(size):
         worst = int(numpy.argmax(size))
-        index = [int(k) for k in numpy.unravel_index(start + worst, batch)]
-        where = f" (item {index})" if batch else ""
-        guard.explain([float(column[worst]) for column in components[: guard.size]], where)
+        guard.explain(
+            [float(column[worst]) for column in components[: guard.size]],
+            item_in_words(start + worst, batch),
+        )
+
+
+def item_in_words(place: int, batch: tuple[int, ...]) -> str:
+    """Return which item of a batch is meant, or nothing if there is only one."""
+    import numpy
+
+    return f" (item {[int(k) for k in numpy.unravel_index(place, batch)]})" if batch else ""
 
 
 def number_array(value: object, item: tuple[int, ...], name: str) -> Array:
@@ -449,10 +460,38 @@ def number_array(value: object, item: tuple[int, ...], name: str) -> Array:
     return array
 
 
-def _demand_finite_array(value: object, name: str) -> None:
+def covariance_array(value: object, size: int) -> Array:
+    """Return a covariance, or a batch of them, or raise an error if it cannot be one.
+
+    Each entry is compared with the deviations of its row and its column, which may have different
+    units.
+    """
     import numpy
 
-    array: Array = numpy.asarray(value)
+    array = number_array(value, (size, size), "covariance")
+    variances = numpy.abs(numpy.diagonal(array, axis1=-2, axis2=-1))
+    # Beside a variance of zero, every entry but zero is too large.
+    deviations = numpy.sqrt(numpy.maximum(variances, 1e-200))
+    allowed = COVARIANCE_SLACK * deviations[..., None] * deviations[..., None, :]
+    difference = array - array.swapaxes(-1, -2)
+    if numpy.any(difference > allowed):
+        raise ValueError(
+            f"covariance is not symmetric: two entries that must be equal differ by "
+            f"{difference.max():.3g}. Is only one half of it filled in, or were its rows and "
+            "columns put into different orders?"
+        )
+    if numpy.any(numpy.linalg.eigvalsh(array / allowed) < -1):
+        raise ValueError(
+            f"covariance has the eigenvalue {numpy.linalg.eigvalsh(array).min():.3g}, but no "
+            "variance is negative. Is an entry outside its diagonal too large, as if it had "
+            "another unit, or does -1 stand for an unknown variance, as in ROS?"
+        )
+    return array
+
+
+def _demand_finite_array(array: Array, name: str) -> None:
+    import numpy
+
     finite = numpy.isfinite(array)
     if numpy.count_nonzero(finite) < array.size:
         index = tuple(int(k) for k in numpy.argwhere(~finite)[0])

@@ -154,6 +154,18 @@ def test_a_lock_is_refused_and_its_neighbourhood_warned_of():
             lambda: o.propagate_covariance(o.quaternion_from_dcm, np.eye(3), np.eye(4)),
             r"covariance has shape \(4, 4\)",
         ),
+        (
+            lambda: o.propagate_covariance(o.rotation_vector_from_dcm, np.eye(3), np.tri(3)),
+            "not symmetric: .* differ by 1. Is only one half of it filled in",
+        ),
+        (
+            lambda: o.propagate_covariance(o.rotation_vector_from_dcm, np.eye(3), 3 - np.eye(3)),
+            "has the eigenvalue -1, but no variance is negative",
+        ),
+        (
+            lambda: o.MultiplicativeKalmanFilter(np.eye(3), np.diag([-1.0, *[1e-4] * 5]), 0, 0),
+            "has the eigenvalue -1, .* as in ROS",
+        ),
     ],
 )
 def test_what_does_not_fit_is_said(call, words):
