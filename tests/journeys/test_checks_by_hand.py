@@ -83,13 +83,23 @@ def test_a_cell_that_failed_says_nothing_of_other_answers(kernel):
         ("student(1a2b3c)", "as in `student('jdoe')`"),
         ("if True:\n    student = 'jdoe'", "as in `student('jdoe')`"),
         ("student(\u2018jdoe\u2019)", "straight quotation marks"),
+        ("student = 'A'\nstudent('jdoe')", "A cell has set the name of this function to a value."),
+        (f"check = {CHECK}\ncheck('a/b', 1)", "A cell has set the name of this function to a"),
+        (f"assert {CHECK.replace('B_C_N', '2*B_C_N')}", "write `check(...)` without `assert`"),
+        (
+            "check('chapters/look-aside', [0, sm.rad(20), 0])",
+            "More than one mistake leads to this answer. For example: These are the angles for",
+        ),
         ("turned_by = \u22122.4", "Type it on the keyboard instead: `-`"),
         ("turned_by = 2\xa0+ 3", "Type it on the keyboard instead: `-`, `*`, a space"),
     ],
 )
 def test_a_slip_with_a_name_is_followed_by_its_remedy(kernel, written, advice):
     assert advice in kernel(written)
-    kernel("beta = sm.Symbol('beta')")
+    # A reader's own variable is no slip.
+    assert not kernel(
+        "student = 5\nbeta = sm.Symbol('beta')\nfrom coursework import check, student"
+    )
 
 
 @pytest.mark.parametrize(

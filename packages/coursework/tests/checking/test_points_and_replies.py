@@ -88,8 +88,10 @@ def test_a_reply_as_text():
         "Correct: levers/one\n"
         "A worked solution comes with this reply, in the notebook or on the page."
     )
-    for outcome, (_, word, _) in OUTCOMES.items():
-        assert repr(Reply("a/b", outcome)) == f"{word}: a/b"
+    assert all(
+        repr(Reply("a/b", outcome)) == f"{word}: a/b" for outcome, (_, word, _) in OUTCOMES.items()
+    )
+    assert {"correct", "recorded"} == {outcome for outcome in OUTCOMES if Reply("a/b", outcome)}
     assert reply.plain_text(r"$\hat{n}_x$ of `A_B`, $\mathbf{R}\cdot\mathrm{d}x$") == (
         "n_x of A_B, R·dx"
     )

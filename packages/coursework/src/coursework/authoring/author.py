@@ -252,7 +252,7 @@ class AuthoredQuestion:
             )
             try:
                 reading = self.read(self.plain)
-                numbers = canonical(self.public, reading) if reading.text is None else []
+                numbers = canonical(self.public, reading)
                 if varying is None:
                     varying = self._varying()
             except (Blank, Fault, Undecidable) as error:
@@ -378,8 +378,7 @@ class AuthoredQuestion:
 
     def _one(self, outcome: str, notes: list[Note], plain: Plain) -> _Known:
         reading = self.read(plain)
-        numbers = canonical(self.public, reading) if reading.text is None else []
-        return _Known(outcome, notes, plain, reading, numbers)
+        return _Known(outcome, notes, plain, reading, canonical(self.public, reading))
 
     def _same(self, one: _Known, other: _Known) -> bool:
         if one.reading.text is not None or other.reading.text is not None:

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..checking.catalogue import message
+from ..checking.catalogue import message_of_all
 from ..checking.evaluate import MP
 from ..checking.kinds import Number, one_sign
 from ..checking.plain import Plain, Value, parts_of, size_of
@@ -74,9 +74,14 @@ def item_of(question: AuthoredQuestion, above: str, notebook: NotebookNode) -> I
     if public.either_sign:
         right.append(tuple(_number(question, -float(value)) for value in right[0]))
     wrong = [
-        Wrong(values[text], note, question.credit.get(note, 0), message(public, note, details))
+        Wrong(
+            values[text],
+            note,
+            question.credit.get(note, 0),
+            message_of_all(public, entry.notes[:2]),
+        )
         for text, entry in known.items()
-        for note, details in entry.notes[:1]
+        for note, _ in entry.notes[:1]
         if note != ONE_WRONG
     ]
     absolute, relative = map(float, tolerances(public))

@@ -69,8 +69,7 @@ def _whole_numbers(question: AuthoredQuestion) -> int | None:
         return None
     if any(abs(entry - round(entry)) > 1e-9 for entry in entries):
         return None
-    largest = max(1, *(abs(round(entry)) for entry in entries))
-    return int((2 * largest + 1) ** len(entries))
+    return int((2 * max(1, *(abs(round(entry)) for entry in entries)) + 1) ** len(entries))
 
 
 def _asked_in(path: Path, course: Course) -> dict[str, Asked]:

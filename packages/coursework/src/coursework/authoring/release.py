@@ -289,8 +289,7 @@ def _answer_of(question: AuthoredQuestion) -> str:
     """Return a short form of an answer, the same whatever points a variant compares it at."""
     public = replace(question.public, salt=question.name)
     reading = read(public, question.plain)
-    numbers = canonical(public, reading) if reading.text is None else []
-    return reading.text or " ".join(MP.nstr(number, 9) for number in numbers)
+    return reading.text or " ".join(MP.nstr(number, 9) for number in canonical(public, reading))
 
 
 def _demand_answers(answers: Sequence[Mapping[str, AboutAnswer]]) -> None:

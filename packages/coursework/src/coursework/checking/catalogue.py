@@ -3,7 +3,7 @@
 import functools
 import inspect
 import itertools
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from .fields import Json
@@ -15,6 +15,18 @@ from .question import Note, Question
 def message(question: Question, note: str, details: Mapping[str, Json]) -> str:
     """Return the message to a student about a mistake."""
     return (kind_of_values(question).messages.get(note) or MESSAGES[note])(question, **details)
+
+
+def message_of_all(question: Question, notes: Sequence[Note]) -> str:
+    """Return the message about a wrong answer to which each of these mistakes leads.
+
+    The author's words suit the question better than those of the catalogue. Otherwise the answer
+    does not show which mistake it was, and there may be more than the two that a locker holds.
+    """
+    authored = [note for note in notes if note.note == "authored"]
+    texts = [message(question, note, details) for note, details in authored or notes]
+    several = "More than one mistake leads to this answer. For example: " if len(texts) > 1 else ""
+    return several + " Or: ".join(texts)
 
 
 def by_short_name(question: Question) -> dict[bytes, Note]:

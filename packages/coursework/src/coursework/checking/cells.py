@@ -47,9 +47,19 @@ ADVICE = {
         "one. Type it on the keyboard instead: `-`, `*`, a space, straight quotation marks.\n"
     ),
     r"(?sm)^name '(\w+)' is not defined.*\bstudent\(\s*\1\b"
-    r"|^(leading zeros|invalid (syntax|decimal)).*\bstudent\(\s*\w|^\s*student\s*=(?!=)": (
+    r"|^(leading zeros|invalid (syntax|decimal)).*\bstudent\(\s*\w|^\s*student\s*=\s*['\"]": (
         "Give your ID in parentheses and quotation marks, as in `student('jdoe')`. Then run this "
         "cell again.\n"
+    ),
+    r"(?sm)^'(str|bool|NoneType|Reply|Given)' object is not callable.*"
+    r"\b(check|hint|student|variant)\(": (
+        "A cell has set the name of this function to a value. Use a different name there, run the "
+        "cell that imports the function, and then run this cell again.\n"
+    ),
+    # The error of an assertion has no words of its own.
+    r"(?s)\A\n.*\bassert\s+check\(": (
+        "The check did not pass. To see its reply, write `check(...)` without `assert` on the last "
+        "line of the cell.\n"
     ),
 }
 # The message about each name whose value is an earlier one, and the cell that last set each name.

@@ -99,7 +99,7 @@ def check(name: str, answer: object) -> Reply:
         reply.help = entry.help
         _offer_sibling(reply, sealed.question, reply.help)
     reply.tries = len(entry.answers) + (entry.outcome == "correct")
-    if os.environ.get("NBGRADER_EXECUTION") and reply.outcome not in ("correct", "recorded"):
+    if os.environ.get("NBGRADER_EXECUTION") and not reply:
         raise NotCorrect(repr(reply))
     return reply
 
@@ -279,8 +279,9 @@ def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) ->
     questions: dict[str, float] = {name: 1 for name in record if name.startswith(f"{notebook}/")}
     # The notebook may be from another release.
     with suppress(RuntimeError):
-        known = notebook_questions(notebook)
-        questions = {name: sealed.worth for name, sealed in known.items()} or questions
+        questions = {
+            name: sealed.worth for name, sealed in notebook_questions(notebook).items()
+        } or questions
     points = sum(questions.values())
     earned = sum(worth for name, worth in questions.items() if name in right)
     taken_down = {

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import cast
 
 from . import sealing
-from .catalogue import by_short_name, message
+from .catalogue import by_short_name, message, message_of_all
 from .evaluate import MP
 from .fields import Fields, Json, Misread, anything, by_name, text, whole
 from .identity import identity
@@ -378,8 +378,12 @@ def compare(
         reading = read(question, plain)
         if kinds()[question.kind].by_a_person:
             words = len(cast(str, reading.text).split())
-            message_text = f"A person will mark this answer ({number_of(words, 'word')})."
-            return Reply(name, "undecided", "for a person", [message_text])
+            return Reply(
+                name,
+                "undecided",
+                "for a person",
+                [f"A person will mark this answer ({number_of(words, 'word')})."],
+            )
         text = fingerprint(question, reading)
         if find is None:
             reply = _taken_down(name, question, reading)
@@ -457,7 +461,7 @@ def _compare(
         name,
         "wrong",
         note,
-        [message(question, note, details)],
+        [message_of_all(question, known.notes)],
         opened=locker,
         known=known,
         details=details,
@@ -534,7 +538,7 @@ def _not_known(
                 # An answer that is right after undoing a slip twice is the right answer itself,
                 # except for the last digits.
                 return _close(name, question)
-            message_text = f"Two mistakes at once: {why} {message(question, note, details)}"
+            message_text = f"Two mistakes at once: {why} {message_of_all(question, known.notes)}"
             return Reply(name, "wrong", f"{slip}, and {note}", [message_text], details=details)
     # Report rounding first if it is the only fault, and not that the value is wrong.
     few = _few_digits(question, plain)

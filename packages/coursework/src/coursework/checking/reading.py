@@ -205,7 +205,10 @@ def offsets(salt: str, count: int) -> list[Number]:
 
 
 def canonical(question: Question, reading: Reading) -> list[Number]:
-    """Return the numbers of a reading in a canonical form, all points one after another."""
+    """Return the numbers of a reading in a canonical form, all points one after another.
+
+    Words have none.
+    """
     unique = kind_of_values(question).unique
     if not unique:
         return [number for numbers in reading.numbers for number in numbers]

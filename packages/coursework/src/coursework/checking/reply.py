@@ -112,6 +112,10 @@ class Reply:
         self.opened, self.known = opened, known
         self.reading: Reading | None = None
 
+    def __bool__(self) -> bool:
+        """Return whether nothing is wrong, so that ``assert check(...)`` means what it says."""
+        return self.outcome in ("correct", "recorded")
+
     def __repr__(self) -> str:
         _, word, _ = OUTCOMES[self.outcome]
         lines = [f"{word}: {self.question}", *map(plain_text, self.messages)]

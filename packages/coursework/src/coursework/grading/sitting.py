@@ -20,7 +20,7 @@ from typing import NamedTuple, TextIO
 from markupsafe import Markup
 
 from ..authoring.author import to_page
-from ..checking.catalogue import message
+from ..checking.catalogue import message_of_all
 from ..checking.plain import Plain, Value, parts_of
 from ..checking.reading import read
 from ..checking.reply import plain_text
@@ -153,8 +153,8 @@ def boxes_of(contract: Contract) -> list[Box]:
     for fingerprint in contract.known:
         locker = contract.locker(fingerprint)
         for answer in locker.answers if locker else ():
-            for note, details in answer.notes[:1]:
-                says = message(contract.question, note, details)
+            for note, _ in answer.notes[:1]:
+                says = message_of_all(contract.question, answer.notes)
                 shares[says] = contract.credit.get(note, 0), note == "authored"
     ranked = sorted(shares, key=shares.__getitem__, reverse=True)[:MOST_BOXES]
     said = [(1, "The right answer."), *((shares[says][0], says) for says in ranked)]

@@ -279,8 +279,9 @@ def restrict_files(readable: Iterable[str], scratch: str) -> None:
             return
         if not stat.S_ISDIR(os.fstat(handle).st_mode):
             access &= EXECUTE | WRITE_FILE | READ_FILE | (1 << 14) | IOCTL_DEVICE
-        rule = struct.pack("=Qi", access & handled, handle)
-        _system_call("landlock", ADD_RULE, rules, 1, rule, 0)
+        _system_call(
+            "landlock", ADD_RULE, rules, 1, struct.pack("=Qi", access & handled, handle), 0
+        )
         os.close(handle)
 
     for path in readable:

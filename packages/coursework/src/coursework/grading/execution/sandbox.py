@@ -844,7 +844,8 @@ def run_notebooks(
     """
 
     def prepare(stack: contextlib.ExitStack) -> Callable[[Job], Result]:
-        sandbox = Sandbox(limits, allow_weak_isolation=allow_weak_isolation, without=without)
-        return stack.enter_context(sandbox).run
+        return stack.enter_context(
+            Sandbox(limits, allow_weak_isolation=allow_weak_isolation, without=without)
+        ).run
 
     yield from side_by_side(jobs, workers, prepare, (WeakIsolation, WorkerDied))
