@@ -13,13 +13,10 @@ from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 
 from .moving import WIDGET
+from .take_away import METADATA
 from .used import MADE_WITH, fingerprint_of_run
 
 PLACES = ("*.ipynb", "chapters/*.ipynb", "appendix/*.ipynb")
-METADATA = {
-    "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
-    "language_info": {"name": "python"},
-}
 KEPT_IN_CELLS = ("tags", "mystnb")
 
 

@@ -20,7 +20,12 @@ ARCHIVE = "exercises.zip"
 #: Extra files such as measurements, which come with the notebooks that import their package.
 DATA = REGISTERED.get("data", {})
 EXERCISES = REPOSITORY / "exercises"
-KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
+#: Metadata of our notebooks.
+METADATA = {
+    "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+    # Without the exporter, nbconvert writes a script as a text file, and leaves out our words.
+    "language_info": {"name": "python", "nbconvert_exporter": "python"},
+}
 NO_METADATA = {"notebook_metadata_filter": "-all", "cell_metadata_filter": "-all"}
 
 
@@ -96,9 +101,7 @@ def make_notebook(app, docname, doctree):
     for position, cell in enumerate(cells):
         # Do not use random IDs, so that builds are equal.
         cell["id"] = f"cell-{position}"
-    return nbformat.v4.new_notebook(
-        cells=cells, metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}}
-    )
+    return nbformat.v4.new_notebook(cells=cells, metadata=METADATA)
 
 
 def write_page(app, pagename, templatename, context, doctree):

@@ -7,7 +7,7 @@ from pathlib import Path
 from .author import AuthorError
 from .course import find_course
 from .packing import DISTRIBUTIONS, archive, wheel
-from .release import KERNEL, release
+from .release import METADATA, release
 
 NOTEBOOK = "first-steps"
 CELLS = [
@@ -163,7 +163,7 @@ def new(folder: str | Path) -> list[str]:
     ]
     for number, cell in enumerate(cells):
         cell["id"] = f"cell-{number}"
-    notebook = nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": KERNEL})
+    notebook = nbformat.v4.new_notebook(cells=cells, metadata=METADATA)
     (folder / "solutions").mkdir()
     nbformat.write(notebook, folder / "solutions" / f"{NOTEBOOK}.ipynb")
     (folder / "wheels").mkdir()

@@ -53,7 +53,11 @@ TOGETHER = 8
 #: The line that asks students for their ID, and its replacement in a course without a roster.
 ASKS_WHO = re.compile(r"""^student\((?:''|"")\).*$""", re.M)
 LEFT_OPEN = f"# student({PLACEHOLDER!r})  # if your course gave you one"
-KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
+METADATA = {
+    "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+    # Without the exporter, nbconvert writes a script as a text file, and leaves out our words.
+    "language_info": {"name": "python", "nbconvert_exporter": "python"},
+}
 
 
 class AboutAnswer(NamedTuple):
@@ -149,8 +153,7 @@ def exercise_notebook(source: Source, roster: bool = False) -> NotebookNode:
             cells.append(code)
     for number, cell in enumerate(cells):
         cell["id"] = f"cell-{number}"
-    about = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
-    made: NotebookNode = nbformat.v4.new_notebook(cells=cells, metadata=about)
+    made: NotebookNode = nbformat.v4.new_notebook(cells=cells, metadata=METADATA)
     return made
 
 
@@ -216,7 +219,7 @@ def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:
         ) from None
     for cell in notebook.cells:
         cell.metadata.pop("execution", None)
-    notebook.metadata = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
+    notebook.metadata = nbformat.from_dict(METADATA)
 
 
 # --- the release --------------------------------------------------------------------------------
