@@ -188,6 +188,14 @@ def changed(old, new, text=QUESTION):
             {"before": [("code", DRAWN)], "text": "Add {{m}}."},
             "its text shows {{m}}, which you have not drawn; you have drawn n.",
         ),
+        *(
+            (
+                {"before": [("code", f"import math\n{line}")]},
+                f"trial.ipynb, cell 1, line 2: `{line}` is not Python. It works only in Jupyter",
+            )
+            for line in ("%matplotlib inline", "!ls", "?print", "print?", "files = !ls")
+        ),
+        ({"before": [("code", "y = (1")]}, "cell 1, line 1: `y = (1` is not Python ('(' was never"),
         (
             {"before": [("code", changed("trial/one", "trial/none", DRAWN))], "text": "Add {{n}}."},
             "trial/none: trial.ipynb draws variants for it, but asks no such question; it asks "
@@ -213,6 +221,22 @@ def test_a_slip_is_refused_and_explained(tmp_path, slip, said):
             {"before": [("code", DRAWN)], "text": "Add {{n}}."},
             "all students would get the same numbers",
         ),
+        (
+            {
+                "answer": changed("3 * x", "'left'", ANSWER),
+                "question": changed("symbols='x'", "options=['left', 'right', 'Left']").replace(
+                    "expression", "choice"
+                ),
+            },
+            "Its options 'left' and 'Left' count as the same answer",
+        ),
+        (
+            {
+                "check": "check('trial/o\u0308ne', answer)",
+                "question": changed("trial/one", "trial/o\u0308ne"),
+            },
+            "An accent in this name is a character of its own",
+        ),
     ],
 )
 def test_the_release_refuses_what_would_not_work(tmp_path, slip, said):
@@ -221,6 +245,19 @@ def test_the_release_refuses_what_would_not_work(tmp_path, slip, said):
     with pytest.raises(AuthorError) as told:
         release(made, run=False)
     assert said in str(told.value) and not list(made.exercises.glob("*"))
+
+
+def test_a_source_finds_the_files_beside_it(tmp_path):
+    """As in Jupyter. Students do not get these files, so their own cells must not need them."""
+    made = made_in(tmp_path)
+    reads = "from slopes import slope\nanswer = slope(open('slopes.csv')) * x"
+    sources(made.sources, answer=changed("answer = 3 * x", reads, ANSWER))
+    (made.sources / "slopes.py").write_text("def slope(lines):\n    return int(*lines)\n")
+    (made.sources / "slopes.csv").write_text("3\n")
+    assert release(made) == ["trial"]
+    sources(made.sources, before=[("code", "text = open('slopes.csv').read()")])
+    with pytest.raises(AuthorError, match="do not get the files beside your notebook"):
+        release(made)
 
 
 def test_line_ends_of_windows_and_spaces_after_a_mark_change_nothing(tmp_path):

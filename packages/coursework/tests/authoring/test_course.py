@@ -322,7 +322,7 @@ def test_a_release_says_which_points_trying_or_a_copy_earns(statics, tmp_path, m
         ("code", "from coursework import check"),
         ("markdown", "Four questions about one beam."),
         asked("support", "choice", "'left'", ", options=['left', 'right']", 3),
-        asked("bent", "expression", "0.6", "", 2),
+        asked("bent", "expression", "0.6", ", mistakes={'Twice.': 1.2, 'Sum.': 0.6 + 0.6}", 2),
         asked("loads", "vector", "[1, 0, -2]", ", length=3", 2),
         asked(
             "ends", "truth values", "[True, False]", ", length=2, exam=True, fixed='Two ends.'", 1
@@ -333,7 +333,11 @@ def test_a_release_says_which_points_trying_or_a_copy_earns(statics, tmp_path, m
     main(["release", "beam"])
     said = capsys.readouterr().out
     assert "beam/support, 3 points: it has only 2 possible answers, so" in said
-    assert "beam/loads, 2 points: it has only 125 possible answers, so" in said
+    assert (
+        "beam/loads, 2 points: it has only 125 possible answers, so" in said
+        and "beam/bent: these mistakes give the same answer" in said
+        and "Twice. / Sum." in said
+    )
     assert "5 of 8 points are for answers that a script" in said and "beam/bent, 2" not in said
     assert (
         "8 of 8 points in exercise notebooks are for questions with one answer for everybody."

@@ -24,6 +24,7 @@ import inspect
 import itertools
 import json
 import re
+import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, TypeGuard
@@ -151,8 +152,8 @@ class AuthoredQuestion:
         Why the question has one answer for everybody.
     entries : dict
         `Entry` by fingerprint: the right answer and every mistake that differs from it.
-    no_mistakes : list of str
-        The author's words for mistakes that give the right answer.
+    slips : list of str
+        The author's slips in the name, the mistakes and the options. We release no such question.
     near : list
         Fingerprints of answers that agree with an exact one to about three digits.
     """
@@ -209,7 +210,16 @@ class AuthoredQuestion:
         ]
         self._demand_notes()
         self.near: list[str] = []
-        self.no_mistakes: list[str] = []
+        self.slips = [
+            f"Its options {first!r} and {second!r} count as the same answer."
+            for first, second in itertools.combinations(public.options, 2)
+            if first.lower() == second.lower()
+        ]
+        if not unicodedata.is_normalized("NFC", name):
+            self.slips.append(
+                "An accent in this name is a character of its own, so nobody who types the name "
+                "gets the same. Type the letter anew here and in the check."
+            )
         self.entries = {} if kinds()[public.kind].by_a_person else self._entries()
 
     @property
@@ -354,7 +364,7 @@ class AuthoredQuestion:
 
     def _known(self) -> list[_Known]:
         """Return the right answer, then every other answer that a mistake leads to."""
-        known, self.no_mistakes = [self._one("correct", [], self.plain)], []
+        known = [self._one("correct", [], self.plain)]
         for mistake in self.mistakes:
             try:
                 one = self._one(
@@ -373,7 +383,9 @@ class AuthoredQuestion:
             ):
                 same.notes.append(one.notes[0])
             elif same is known[0] and mistake.note == "authored":
-                self.no_mistakes.append(str(mistake.details["text"]))
+                self.slips.append(
+                    f"This authored mistake gives the right answer: {mistake.details['text']}"
+                )
         return known
 
     def _one(self, outcome: str, notes: list[Note], plain: Plain) -> _Known:

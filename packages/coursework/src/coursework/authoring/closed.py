@@ -26,12 +26,16 @@ MOST = 2**16
 
 
 class Asked(NamedTuple):
-    """A question: its points, variants and possible answers, and why it has only one variant."""
+    """A question: its points, variants and possible answers, and why it has only one variant.
+
+    `alike` are the author's replies to mistakes that give the same answer.
+    """
 
     worth: float
     variants: int
     possible: int | None
     fixed: str
+    alike: list[tuple[str, ...]]
 
 
 def possible_answers(question: AuthoredQuestion) -> int | None:
@@ -78,10 +82,23 @@ def _asked_in(path: Path, course: Course) -> dict[str, Asked]:
         source = read_source(path, edition=course.edition)
     return {
         name: Asked(
-            question.worth, question.public.variants, possible_answers(question), question.fixed
+            question.worth,
+            question.public.variants,
+            possible_answers(question),
+            question.fixed,
+            _alike(question),
         )
         for name, question in source.questions.items()
     }
+
+
+def _alike(question: AuthoredQuestion) -> list[tuple[str, ...]]:
+    replies = dict.fromkeys(
+        tuple(str(details["text"]) for note, details in one.notes if note == "authored")
+        for entry in question.entries.values()
+        for one in entry.answers
+    )
+    return [texts for texts in replies if len(texts) > 1]
 
 
 def counted(course: Course, only: Collection[str] = ()) -> list[str]:
@@ -90,8 +107,9 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
     Returns
     -------
     list of str
-        A line for each question with a closed answer that is worth more than a point, the points
-        behind closed answers, and the points with one answer for everybody, with the reasons.
+        A line for each question with a closed answer that is worth more than a point, and for
+        mistakes that give the same answer, the points behind closed answers, and the points with
+        one answer for everybody, with the reasons.
     """
     paths = notebooks_in(course.sources, only)
     with processes_for(paths) as pool:
@@ -103,6 +121,12 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
         "can try them all. Ask for several parts in one answer or for a function, or set exam=True."
         for name, one in asked.items()
         if one.possible and one.worth > 1
+    ]
+    lines += [
+        f"{name}: these mistakes give the same answer, so students who make either get the first "
+        f"reply. Write one reply for them, or choose other numbers: {' / '.join(texts)}"
+        for name, one in asked.items()
+        for texts in one.alike
     ]
     closed = sum(one.worth for one in asked.values() if one.possible)
     points = sum(one.worth for one in asked.values())

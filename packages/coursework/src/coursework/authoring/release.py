@@ -40,6 +40,7 @@ from .source import (
     answered_in,
     checked_names,
     digest_of_code,
+    files_of,
     names_asked,
     notebooks_in,
     posed,
@@ -214,8 +215,14 @@ def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:
     except CellExecutionError as error:
         raise AuthorError(
             f"The notebook for students does not run with its blanks empty: {error.ename}: "
-            f"{error.evalue.rstrip('.')}. Does a cell outside the solutions use an answer? "
-            f"{error.traceback.partition(chr(10) * 3)[0]}"
+            f"{error.evalue.rstrip('.')}. "
+            + (
+                "Students do not get the files beside your notebook. Put the data or the "
+                "functions into a cell, or use them only in solutions and hidden tests. "
+                if error.ename in ("FileNotFoundError", "ModuleNotFoundError")
+                else "Does a cell outside the solutions use an answer? "
+            )
+            + error.traceback.partition("\n\n\n")[0]
         ) from None
     for cell in notebook.cells:
         cell.metadata.pop("execution", None)
@@ -252,11 +259,8 @@ def _release_one(path: Path, course: Course) -> Made:
     """Make a notebook and its sealed questions."""
     source = read_source(path, edition=course.edition)
     for name, question in source.questions.items():
-        for text in question.no_mistakes:
-            raise AuthorError(
-                f"{name}, in {path.name}: This authored mistake gives the right answer: {text}"
-            )
-        for fault in told_openly(question, secrets_of(source)) if question.ladder else ():
+        openly = told_openly(question, secrets_of(source)) if question.ladder else []
+        for fault in [*question.slips, *openly]:
             raise AuthorError(f"{name}, in {path.name}: {fault}")
     if source.rules and not source.asks_who and source.name != CHAPTERS:
         raise AuthorError(
@@ -324,14 +328,14 @@ def _release_variant(
     """Solve, test and seal one variant of a notebook's questions.
 
     The results are stored beside the archive, under a name that depends on everything they are made
-    from: the source, our code, the versions of the packages that compute the answers, and the pages
-    of the first variant, which theirs refer to.
+    from: the source with the files beside it, our code, the versions of the packages that compute
+    the answers, and the pages of the first variant, which theirs refer to.
     """
     first = (course.sealed / f"{path.stem}.json").read_text("utf8")
     digest = hashlib.sha256(
         "\n".join([course.edition, str(number), digest_of_code(), *_versions(), first]).encode()
     )
-    digest.update(path.read_bytes())
+    digest.update(b"".join(files_of(path).values()))
     kept = (
         course.archive.parent / "variants" / f"{path.stem}-{number}-{digest.hexdigest()[:16]}.json"
     )

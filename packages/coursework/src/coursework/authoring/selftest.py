@@ -117,7 +117,7 @@ def try_question(question: AuthoredQuestion, against_sealed: bool = True) -> Fin
     tested here for the right answer. For the others it follows from the release, which locks
     nothing else.
     """
-    faults: list[str] = []
+    faults = list(question.slips)
     if kinds()[question.public.kind].by_a_person:
         return _try_text(question)
     forms = equivalent_forms(question.public, question.answer)
@@ -196,8 +196,6 @@ def _try_mistakes(
             reply = question.reply_to(plain)
             if reply.outcome == "correct":
                 unmoved.append(mistake.note)
-                if mistake.note == "authored":
-                    faults.append(f"This authored mistake gives the right answer: {said}")
                 continue
             entry = question.entries[question.fingerprint_of(plain)]
         except (Fault, Undecidable, NotPlain) as refused:

@@ -56,6 +56,8 @@ HIDDEN = re.compile(
 )
 #: The names in marks, and a pattern for every line that was meant as a mark.
 MARKED = ("SOLUTION", "HIDDEN TESTS", "VARIANTS")
+#: A line that only Jupyter understands: a magic, a command for the shell, or a request for help.
+OF_JUPYTER = re.compile(r"[%!?]|.*\?$|.*=\s*[%!]")
 MARK = re.compile(r"[ \t]*#+[ \t]*(BEGIN|END)[ \t]+((?:SOLUTION|HIDDEN|VARIANT).*)", re.I)
 
 
@@ -154,15 +156,47 @@ def cells_of(path: str | Path) -> list[dict[str, Any]]:
     Raises
     ------
     AuthorError
-        It is not a notebook, for example after a merge with conflicts.
+        It is not a notebook, for example after a merge with conflicts, or a cell is not Python.
     """
     # Avoid nbformat, which takes a second to import, since this runs at each start.
     try:
-        return list(json.loads(Path(path).read_text("utf8"))["cells"])
+        cells: list[dict[str, Any]] = list(json.loads(Path(path).read_text("utf8"))["cells"])
     except (ValueError, LookupError, TypeError) as error:
         raise author.AuthorError(
             f"{path} is not a notebook that we can read ({error}). Restore it, or delete it."
         ) from None
+    for number, cell in enumerate(cells):
+        try:
+            ast.parse("".join(cell["source"]) if cell["cell_type"] == "code" else "")
+        except SyntaxError as error:
+            line = (error.text or "").strip()
+            raise author.AuthorError(
+                f"{Path(path).name}, cell {number}, line {error.lineno}: `{line}` is not Python"
+                + (
+                    ". It works only in Jupyter, but students can answer on other pages, too. "
+                    "Delete it, or write it in Python."
+                    if OF_JUPYTER.match(line)
+                    else f" ({error.msg})."
+                )
+            ) from None
+    return cells
+
+
+def files_of(path: Path) -> dict[str, bytes]:
+    """Return a source and the files beside it that its cells may read, by their names there.
+
+    Hidden files and an author's notes in Markdown are not among them.
+    """
+    beside = [
+        place
+        for place in sorted(path.parent.rglob("*"))
+        if place.is_file()
+        and place.suffix not in (".ipynb", ".md", ".pyc")
+        and not any(part.startswith(".") for part in place.relative_to(path.parent).parts)
+    ]
+    return {
+        place.relative_to(path.parent).as_posix(): place.read_bytes() for place in [path, *beside]
+    }
 
 
 def read_source(
@@ -337,6 +371,9 @@ def _figures_of_run(path: Path, notebook: NotebookNode, recorder: _Recorder) -> 
             ("student", lambda identity="": recorder.identities.append(identity)),
         ):
             replaced.enter_context(_replaced(coursework, name, record))
+        # As in Jupyter, cells find the data and the modules beside their notebook.
+        replaced.enter_context(contextlib.chdir(path.parent))
+        replaced.enter_context(_replaced(sys, "path", ["", *sys.path]))
         for number, cell in enumerate(notebook.cells):
             if cell.cell_type != "code":
                 continue

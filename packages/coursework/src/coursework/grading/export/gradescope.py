@@ -22,6 +22,7 @@ from pathlib import Path
 
 from ...authoring.course import find_course
 from ...authoring.packing import zipped
+from ...authoring.source import files_of
 from ..judging.secret import FILE as SECRET
 from ..judging.secret import secret_beside
 from ..judging.term import FILE, term_of
@@ -76,15 +77,21 @@ def write_autograder(
     folder, term = Path(solutions or find_course().sources), term_of(marks)
     course = Course(folder, term, [assignment])
     stems = course.assignments[assignment]
-    there = f'time-zone = "UTC"\n[assignments.{json.dumps(assignment)}]\n'
-    there += f"notebooks = {json.dumps(stems)}\n"
+    there = (
+        f'time-zone = "UTC"\n[assignments.{json.dumps(assignment)}]\n'
+        f"notebooks = {json.dumps(stems)}\n"
+    )
     # Create the secret here if necessary, so that both places give the same marks.
     secret_beside(folder)
     files = {
         "setup.sh": SETUP.encode(),
         "run_autograder": RUN.encode(),
         "requirements.txt": "".join(f"{one}\n" for one in requirements()).encode(),
-        **{f"solutions/{stem}.ipynb": course.sources[stem].read_bytes() for stem in stems},
+        **{
+            f"solutions/{name}": data
+            for stem in stems
+            for name, data in files_of(course.sources[stem]).items()
+        },
         f"solutions/{SECRET}": (folder / SECRET).read_bytes(),
     }
     if course.edition:

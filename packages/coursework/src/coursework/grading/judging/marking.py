@@ -18,7 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...authoring.author import AuthoredQuestion, AuthorError
-from ...authoring.source import names_asked, read_source, texts_of_questions
+from ...authoring.source import files_of, names_asked, read_source, texts_of_questions
 from ...checking.evaluate import MP
 from ...checking.fields import Json, by_name, many
 from ...checking.kinds import PARTS, Blank, Fault, Undecidable
@@ -202,12 +202,13 @@ def load_questions(
     """Load the questions of several notebooks with solutions, by name.
 
     We store the processed questions in the folder of results, under a name that depends on the
-    bytes of the notebook and the versions of the software.
+    bytes of the notebook, those of the files beside it, and the versions of the software.
     """
     places: dict[Path, Path] = {}
     for path in map(Path, paths):
         ours = hashlib.sha256(json.dumps(software()).encode() + secret).digest()
-        depends = hashlib.sha256(ours + edition.encode() + path.read_bytes()).hexdigest()[:16]
+        sources = b"".join(files_of(path).values())
+        depends = hashlib.sha256(ours + edition.encode() + sources).hexdigest()[:16]
         places[path] = Path(results) / "questions" / f"{path.stem}-{depends}.json"
 
     def work_out(path: Path) -> None:
