@@ -87,7 +87,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         # Pressing Ctrl+C again must not interrupt the end of the processes that grade.
         atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
         # Only grading keeps what it has done.
-        sys.exit("\nStopped." + " Run the same command again to resume." * (command == "grade"))
+        again = " Run the same command again to resume." if command == "grade" else ""
+        sys.exit(f"\nStopped.{again}")
     except ModuleNotFoundError as error:
         sys.exit(
             f"coursework {command} needs Linux, because it runs students' code in isolation. Run "

@@ -299,14 +299,11 @@ def test_a_mistake_is_found_beside_a_slip():
     )
     cells = {text_of(rough, at): Locker((near,))}
     assert reply_to(rough, cells, [[1, 0.333], [5, 4]])[1] == "transposed, and authored"
-    rounded = sm.Matrix([[1, 3], [0.333, 4]])
-    lockers[text_of(matrix, rounded.T)] = Locker((mistake("Known."),))
-    assert (
-        reply_to(matrix, lockers, rounded)[1] == ""
-    )  # A rounded answer is no known mistake to the digit.
-    exact = sm.Matrix([[1, 3], [0.5, 4]])
-    lockers[text_of(matrix, exact.T)] = Locker((mistake("Known."),))
-    assert reply_to(matrix, lockers, exact)[1] == "transposed, and authored"
+    # A rounded answer is no known mistake to the digit.
+    for entry, note in ((0.333, ""), (0.5, "transposed, and authored")):
+        answer = sm.Matrix([[1, 3], [entry, 4]])
+        lockers[text_of(matrix, answer.T)] = Locker((mistake("Known."),))
+        assert reply_to(matrix, lockers, answer)[1] == note
     wide = Question("matrix", salt="s", shape=(1, 2))
     assert reply_to(wide, {}, [[1, 2]])[:2] == ("wrong", "")
 

@@ -237,12 +237,15 @@ def test_times_of_a_systems_table(rules, tmp_path):
     assert (
         result(rules(text), record(6, identity={"name": "Bob Lee"}))[0]["turns"].handed_in is None
     )
-    (tmp_path / "worksheet.csv").write_text("username,timestamp\nann,yesterday\n")
-    with pytest.raises(term.BadTerm, match="'ann': 'yesterday' is not a time.* to English"):
-        rules(text)
-    (tmp_path / "worksheet.csv").write_text("username,when\nann,yesterday\n")
-    with pytest.raises(term.BadTerm, match="no column gives the time"):
-        rules(text)
+    for table, why in (
+        ("username,timestamp\nann,yesterday\n", "'ann': 'yesterday' is not a time.* to English"),
+        # We guess neither the day nor the month.
+        ("username,timestamp\nann,1/2/2026 10:00\n", "'1/2/2026 10:00' is not a time"),
+        ("username,when\nann,yesterday\n", "no column gives the time"),
+    ):
+        (tmp_path / "worksheet.csv").write_text(table)
+        with pytest.raises(term.BadTerm, match=why):
+            rules(text)
 
 
 GOOD = writes(handed_in()).encode()

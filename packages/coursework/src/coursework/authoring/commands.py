@@ -177,7 +177,8 @@ def bank(out: Path, format: str, questions: Sequence[str]) -> None:
     from .bank import bank as write
 
     exported, left = write(_course(), out, format, questions)
-    print(*left, sep="\n", end="\n" * bool(left))
+    for line in left:
+        print(line)
     print(
         f"We wrote {len(exported)} of {len(exported) + len(left)} questions to {out}, with "
         f"{sum(map(len, exported.values()))} variants in all."

@@ -456,7 +456,7 @@ def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> 
         else ""
     )
     print(
-        f"New in {path}{' (dry run: not imported)' * dry_run}: "
+        f"New in {path}{' (dry run: not imported)' if dry_run else ''}: "
         f"{number_of(len(decisions), 'decision')}{others}."
     )
     foreign = [

@@ -48,7 +48,7 @@ from .reporting.reports import deed
 from .reporting.templates_of_pages import ENVIRONMENT, source_of
 from .store import Store
 from .submissions.intake import SAYS
-from .tables import number
+from .tables import number, reason_of
 
 ALONE = "127.0.0.1"
 POLICY = (
@@ -263,13 +263,18 @@ class Class:
             self.questions[cluster.question].rubric if cluster.question in self.questions else ()
         )
         found |= dict.fromkeys(source)
-        used: Counter[str] = Counter()
-        for one in self.journal.by_people:
-            if isinstance(one, Decision) and one.question == cluster.question:
-                found |= dict.fromkeys(one.rubric)
-        for one in self.standing.decisions.values():
-            if one.question == cluster.question:
-                used.update(set(one.rubric))
+        found |= dict.fromkeys(
+            line
+            for one in self.journal.by_people
+            if isinstance(one, Decision) and one.question == cluster.question
+            for line in one.rubric
+        )
+        used = Counter(
+            line
+            for one in self.standing.decisions.values()
+            if one.question == cluster.question
+            for line in set(one.rubric)
+        )
         found |= {
             line: None for question, line in self.standing.worths if question == cluster.question
         }
@@ -287,17 +292,14 @@ class Class:
         """Return the clusters that a grader chose to see, the largest of each question first."""
         text = filters.get("search", "").casefold()
         orders = {name: order for order, name in enumerate(self.questions)}
-        found = []
-        for cluster in self.clusters.values():
-            if not self.is_shown(cluster, filters.get("show", "waiting")):
-                continue
-            if filters.get("question") and filters["question"] != cluster.question:
-                continue
-            if text and text not in self.searchable(cluster, hide_names):
-                continue
-            found.append(cluster)
         return sorted(
-            found,
+            (
+                cluster
+                for cluster in self.clusters.values()
+                if self.is_shown(cluster, filters.get("show", "waiting"))
+                and filters.get("question") in (None, "", cluster.question)
+                and (not text or text in self.searchable(cluster, hide_names))
+            ),
             key=lambda one: (
                 one.assignment,
                 orders.get(one.question, 0),
@@ -528,7 +530,7 @@ class _Answer(_Page):
         except (Collision, OSError) as error:
             self.set_status(507 if isinstance(error, OSError) else 409)
             if isinstance(error, OSError):
-                error = Collision(f"We could not save it: {error.strerror or error}.")
+                error = Collision(f"We could not save it: {reason_of(error)}.")
             self.show_cluster(cluster, filters, collision=error)
             return
         # Go to the next answer, although the list may be shorter now.
@@ -678,9 +680,10 @@ def _history(
             elif one.credit is None:
                 said.append((one.when, one.who, one.student, "took a decision back", one.why))
             else:
-                words = f"{number(one.credit * cluster.mark.worth)} points"
-                words += " by the rubric" * (one.points is not None) + ", appeal accepted" * bool(
-                    one.appeal
+                words = (
+                    f"{number(one.credit * cluster.mark.worth)} points"
+                    + ("" if one.points is None else " by the rubric")
+                    + (", appeal accepted" if one.appeal else "")
                 )
                 said.append((one.when, one.who, one.student, words, one.why))
     return said

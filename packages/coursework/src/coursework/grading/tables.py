@@ -61,6 +61,11 @@ def lines(header: Iterable[str], rows: Iterable[Iterable[object]]) -> Iterator[s
         file.truncate()
 
 
+def reason_of(error: Exception) -> str:
+    """Return the system's reason for an error without the path, or else all of the error's text."""
+    return error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+
+
 def in_a_line(text: str, most: int) -> str:
     """Return strangers' text for part of a line, so that it cannot begin a line that seems ours."""
     return " ".join(readable(text, most).split())

@@ -745,12 +745,9 @@ class Journal:
         cases = {
             case_id(record, name): (record, name) for record in records for name in record.marks
         }
-        unused, wanted, standing, why = (
-            [],
-            list[Decision](),
-            self.standing().decisions,
-            f"from {path.name}",
-        )
+        standing = self.standing().decisions
+        wanted: list[Decision] = []
+        unused: list[str] = []
         for number, row in rows:
             # The cell of a box contains its share of the points, then its words.
             share, _, words = row.get(row.get("tick", "").casefold() or "-", "").partition(": ")
@@ -785,7 +782,7 @@ class Journal:
                     who=who,
                     comment=row.get("comment", ""),
                     rubric=[words] if words else [],
-                    why=why,
+                    why=f"from {path.name}",
                     contract=row["version"].lstrip("#"),
                 )
             )
@@ -891,12 +888,8 @@ def _is_cut(line: bytes) -> bool:
 
 def _line(one: Event) -> bytes:
     said = {"event": type(one).__name__.lower(), **one.as_json()}
-    return (
-        json.dumps(said | {"sum": _sum(said)}, ensure_ascii=False).encode(
-            "utf8", "backslashreplace"
-        )
-        + b"\n"
-    )
+    text = json.dumps(said | {"sum": _sum(said)}, ensure_ascii=False)
+    return text.encode("utf8", "backslashreplace") + b"\n"
 
 
 def _sum(said: Mapping[str, Json]) -> str:

@@ -25,6 +25,7 @@ from ...checking.plain import NotPlain, Plain, to_plain
 from ...checking.plugins import kinds
 from ...checking.question import Question
 from ...checking.reading import calls_for, canonical, read, tolerances
+from ..tables import reason_of
 from .contract import Elsewhere
 
 FILE = ".grading-secret"
@@ -57,7 +58,7 @@ def secret_beside(folder: str | Path) -> bytes:
         return bytes.fromhex(path.read_text("ascii").strip())
     except (OSError, ValueError) as error:
         raise ValueError(
-            f"We cannot read or create {path} ({getattr(error, 'strerror', None) or error}). This "
+            f"We cannot read or create {path} ({reason_of(error)}). This "
             "file holds the secret of the course, from which grading derives some of its test "
             "inputs. It belongs beside the solutions."
         ) from None

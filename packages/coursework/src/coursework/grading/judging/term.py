@@ -21,7 +21,7 @@ from ..reading import from_table
 from ..record import Mark, Record
 from ..submissions.intake import Notebook, as_time
 from ..submissions.roster import Roster
-from ..tables import number_of
+from ..tables import number_of, reason_of
 from .journal import Part
 from .laboratory import Policies
 
@@ -110,7 +110,7 @@ class Assignment:
                 f"Once this is marked, homework on these questions counts for {share} of its "
                 "points."
             )
-        return "Homework on these questions counts in full alongside it." * bool(self.questions)
+        return "Homework on these questions counts in full alongside it." if self.questions else ""
 
     def most(self, mark: Mark | Part, seen: Mark | Part) -> float:
         """Return the most points that homework on a question counts for, by the sitting's mark."""
@@ -498,7 +498,7 @@ def read_term(path: str | Path) -> Term:
             if isinstance(error, FileNotFoundError)
             else ". Write a date as 2026-10-05T23:59:00, and put text in quotation marks."
         )
-        raise BadTerm(f"{path}: {getattr(error, 'strerror', None) or error}{advice}") from None
+        raise BadTerm(f"{path}: {reason_of(error)}{advice}") from None
     file = _File(path)
     if zone := said.get("time-zone"):
         try:
