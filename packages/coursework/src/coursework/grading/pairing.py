@@ -243,7 +243,7 @@ def _say_whose(handed_in: HandedIn, folder: Path, show: TextIO) -> None:
         print(whose + (f" DOES NOT COUNT: {why}" if why else ""), file=show)
     if len(rows) > MOST_SHOWN:
         print(f"  ... and {len(rows) - MOST_SHOWN} more: {folder / WHOSE}", file=show)
-    ends = ("whose are they?", intake.NOT_MATCHED, intake.NO_GROUP)
+    ends = (intake.CLAIMED_TWICE, intake.NOT_MATCHED, intake.NO_GROUP)
     asked = [refused for refused in handed_in.refused if refused.why.endswith(ends)]
     for refused in asked[:MOST_SHOWN]:
         print(f"  ? <- {in_a_line(refused.file, 120)}: {in_a_line(refused.why, 300)}", file=show)
@@ -263,7 +263,7 @@ def _say_absent(
     missing = sorted(people - present - damaged)
     for names, what in (
         (missing, "handed in nothing"),
-        (sorted(damaged), "handed in files that cannot be graded"),
+        (sorted(damaged), "handed in files that we did not grade"),
     ):
         if names:
             shown = ", ".join(names[:MOST_SHOWN]) + (", ..." if len(names) > MOST_SHOWN else "")

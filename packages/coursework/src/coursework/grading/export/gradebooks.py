@@ -25,7 +25,7 @@ from ..store import Store, feedback_of, file_name, write
 from ..submissions.intake import refused_of
 from ..submissions.languages import LANGUAGES, in_english
 from ..submissions.roster import encoding_of, local_parts, turned
-from ..tables import in_a_line, number, number_of, table
+from ..tables import in_a_line, number, number_of, reason_of, table
 
 NBGRADER = (
     "assignment",
@@ -168,7 +168,7 @@ class Marks:
 
     @property
     def damaged(self) -> list[str]:
-        """The students who are known to have handed in only files that cannot be graded."""
+        """The students who are known to have handed in only files that we did not grade."""
         return [student for (student, _), one in self.results.items() if one.state == DAMAGED]
 
     @property
@@ -395,16 +395,14 @@ def _read(path: str | Path, names: Mapping[str, str]) -> Gradebook:
     try:
         return Gradebook(Path(path), names)
     except (OSError, UnicodeDecodeError) as error:
-        raise CannotExport(
-            f"We cannot read {path}: {getattr(error, 'strerror', None) or error}."
-        ) from None
+        raise CannotExport(f"We cannot read {path}: {reason_of(error)}.") from None
 
 
 #: The headings of the lists of students in the messages, in this order.
 HEADINGS = {
     "changed": "Changed since our last export",
     "nothing": "In the gradebook, but handed in nothing",
-    "damaged": "In the gradebook, but handed in only files that cannot be graded",
+    "damaged": "In the gradebook, but we graded none of their files",
     "strangers": "Handed in, but not in the gradebook",
     "missing": "Handed in nothing by the due date: 0",
     "several": "Not filled in, because the name is ambiguous",
@@ -671,14 +669,12 @@ def _match(
         ("id", one.called.get("moodle")) in lines for one in everybody.values()
     )
     for student, identity in everybody.items():
-        for key in _keys_of_student(system, student, identity, anew):
-            candidates = lines.get(key, set())
-            if len(candidates) == 1:
-                wanting.setdefault(next(iter(candidates)), []).append(student)
-                break
-            if candidates:
-                several.append(student)
-                break
+        keys = _keys_of_student(system, student, identity, anew)
+        candidates = next((lines[key] for key in keys if key in lines), set[int]())
+        if len(candidates) == 1:
+            wanting.setdefault(min(candidates), []).append(student)
+        elif candidates:
+            several.append(student)
     # Being first is no better claim, so we fill a line that two students could mean for neither.
     several += [
         student for students in wanting.values() if len(students) > 1 for student in students
@@ -777,29 +773,21 @@ def write_nbgrader(path: str | Path, marks: Marks) -> str:
 
 def write_gradescope(path: str | Path, marks: Marks, student: str) -> None:
     """Write a Gradescope autograder's results for one student."""
-    tests: list[dict[str, str | float]] = []
-    for record in marks.students[student]:
-        for mark in record.marks.values():
-            tests.append(
-                {
-                    "name": readable(mark.title, 200),
-                    "number": str(len(tests) + 1),
-                    "score": mark.points,
-                    "max_score": mark.worth,
-                    # Give no status if a person has still to decide.
-                    **(
-                        {}
-                        if mark.outcome == "undecided"
-                        else {
-                            "status": "passed"
-                            if mark.outcome in ("correct", "decided")
-                            else "failed"
-                        }
-                    ),
-                    "visibility": "visible",
-                    "output_format": "text",
-                    "output": readable("\n".join([mark.outcome, *map(plain_text, mark.messages)])),
-                }
-            )
+    given = [mark for record in marks.students[student] for mark in record.marks.values()]
+    # Give no status if a person has still to decide.
+    status = {"undecided": {}, "correct": {"status": "passed"}, "decided": {"status": "passed"}}
+    tests = [
+        {
+            "name": readable(mark.title, 200),
+            "number": str(order),
+            "score": mark.points,
+            "max_score": mark.worth,
+            **status.get(mark.outcome, {"status": "failed"}),
+            "visibility": "visible",
+            "output_format": "text",
+            "output": readable("\n".join([mark.outcome, *map(plain_text, mark.messages)])),
+        }
+        for order, mark in enumerate(given, 1)
+    ]
     results = {"score": marks.points(student), "output_format": "text", "tests": tests}
     write(path, json.dumps(results, indent=1, ensure_ascii=False) + "\n")

@@ -19,7 +19,7 @@ STATES = {
     "dropped": "dropped: it does not count",
     "excused": "excused",
     "missing": "nothing was handed in",
-    "damaged": "your file cannot be graded automatically, so a person has to look at it",
+    "damaged": "your file has not been graded, because a person has to look at it first",
     "not due": "not due yet",
 }
 OUTCOMES = {
@@ -99,7 +99,7 @@ def write_course(store: Store, term: Term, *, now: datetime.datetime | None = No
         all_results += results
     lines += unknown_times(all_results, term)
     lines += [
-        f"{name}: the files of {', '.join(those)} cannot be graded. The totals leave them out "
+        f"{name}: we did not grade the files of {', '.join(those)}. The totals leave them out "
         f"until a person has looked at them: {store.folder / 'refused.csv'} says why."
         for name, those in damaged.items()
     ]

@@ -197,7 +197,9 @@ class Layout:
         if not self._is_inside(parts):
             return None
         parts = parts[len(self.enclosing) :]
-        found: Claim | None = getattr(self, f"_{self.kind}")(parts)
+        read, pattern = getattr(self, f"_{self.kind}"), PATTERNS.get(self.kind)
+        match = pattern.fullmatch(parts[0]) if pattern else None
+        found: Claim | None = (match and read(parts, match)) if pattern else read(parts)
         if found and self.student is not None and self.kind == "own":
             found = found._replace(source=f"all of {self.student}", file="/".join(parts))
         return found and found._replace(place=parts[0])
@@ -212,7 +214,8 @@ class Layout:
             and parts[len(self.enclosing) - 1] in NBGRADER
         )
 
-    # -- one method for each system: a name that does not fit claims nothing
+    # -- one method for each system: a name that does not fit claims nothing. If all names of a
+    # system have one pattern, its method also receives the match.
 
     def _canvas(self, parts: Parts) -> Claim | None:
         kind, found = self._read_as_canvas(parts[0])
@@ -275,10 +278,7 @@ class Layout:
             others=tuple(others),
         )
 
-    def _moodle(self, parts: Parts) -> Claim | None:
-        found = MOODLE.fullmatch(parts[0])
-        if not found:
-            return None
+    def _moodle(self, parts: Parts, found: re.Match[str]) -> Claim:
         name, user = _clean(found["name"]), found["user"]
         return Claim(
             f"{name} {user}",
@@ -289,10 +289,7 @@ class Layout:
             reply=_before_the_file(found) if found["file"] else f"{parts[0]}/",
         )
 
-    def _brightspace(self, parts: Parts) -> Claim | None:
-        found = BRIGHTSPACE.fullmatch(parts[0])
-        if not found:
-            return None
+    def _brightspace(self, parts: Parts, found: re.Match[str]) -> Claim:
         name, user = _clean(found["name"]), found["user"]
         keys = (("brightspace", user), ("name", name))
         when = _when(found["when"])
@@ -307,10 +304,7 @@ class Layout:
             reply=f"{parts[0]}/",
         )
 
-    def _blackboard(self, parts: Parts) -> Claim | None:
-        found = BLACKBOARD.fullmatch(parts[0])
-        if not found:
-            return None
+    def _blackboard(self, parts: Parts, found: re.Match[str]) -> Claim:
         user = self._blackboard_user(found["who"])
         when = tuple(map(int, found["when"].split("-")))
         return Claim(
@@ -396,6 +390,7 @@ def _fits(pattern: re.Pattern[str], in_file: bool = True) -> Callable[[Parts], b
     return fits
 
 
+PATTERNS = {"moodle": MOODLE, "brightspace": BRIGHTSPACE, "blackboard": BLACKBOARD}
 SYSTEMS: tuple[tuple[str, Callable[[Parts], bool]], ...] = (
     # Canvas hands out only files. A folder with two numbers in its name may be a student's own.
     (

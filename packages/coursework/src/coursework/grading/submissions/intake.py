@@ -385,12 +385,10 @@ def _take(
     if not name.lower().endswith(".ipynb"):
         others.setdefault(claim.source if claim else None, []).append((claim, name, read))
         return
-    if claim is None and layout.is_beside_submissions(name):
-        return
     if claim is None:
-        refused.append(
-            Refused(name, "", "Its name does not say whose it is, although the other names do.")
-        )
+        if not layout.is_beside_submissions(name):
+            why = "Its name does not say whose it is, although the other names do."
+            refused.append(Refused(name, "", why))
         return
     try:
         data = read()
@@ -478,6 +476,7 @@ NO_GROUP = (
     "Several students handed this in together, but they are not a group in term.toml. Add them "
     "under [groups], such as team-1 = ['ada', 'ben']."
 )
+CLAIMED_TWICE = "We graded neither. Whose are they? Remove one, or give it its owner's name."
 NOT_MATCHED = "In the roster, write the name of its folder or file in a column `handed in as`."
 
 
@@ -485,29 +484,19 @@ def _without_conflicts(
     notebooks: Sequence[Notebook], roster: Roster | None, refused: list[Refused]
 ) -> list[Notebook]:
     """Leave out all notebooks of a student whom two submissions claim: one may be a classmate's."""
-    first: dict[str | tuple[str, str], str] = {}
-    several: dict[str | tuple[str, str], tuple[set[str], set[str]]] = {}
+    claimed: dict[str | tuple[str, str], list[Notebook]] = {}
     for one in notebooks:
         for identity in _identities(one, roster):
-            if first.setdefault(identity, one.claim.source) != one.claim.source:
-                several[identity] = set(), set()
-    # Nearly all names are claimed once, so collect the claimants of the others only.
-    for one in notebooks if several else ():
-        for identity in several.keys() & set(_identities(one, roster)):
-            sources, students = several[identity]
-            sources.add(one.claim.source)
-            students.add(one.student)
+            claimed.setdefault(identity, []).append(one)
     unsure: dict[str, set[str]] = {}
-    for sources, students in several.values():
-        for student in students:
-            unsure.setdefault(student, set()).update(sources)
+    for claims in claimed.values():
+        sources = {one.claim.source for one in claims}
+        for one in claims if len(sources) > 1 else ():
+            unsure.setdefault(one.student, set()).update(sources)
     for one in notebooks:
         if one.student in unsure:
             those = ", ".join(sorted(unsure[one.student]))
-            why = (
-                f"Two submissions claim to be this student's: {those}. We graded neither. Whose "
-                "are they?"
-            )
+            why = f"Two submissions claim to be this student's: {those}. {CLAIMED_TWICE}"
             refused.append(Refused(one.file, one.student, why))
     return [one for one in notebooks if one.student not in unsure]
 
@@ -962,10 +951,11 @@ def _json(data: bytes) -> dict[str, object]:
         raise Unfit("It is nested too deeply.") from None
     except ValueError as error:
         where = f" (line {error.lineno})" if isinstance(error, json.JSONDecodeError) else ""
+        is_page = data.lstrip().startswith(b"<")
         raise Unfit(
             f"Not a notebook: it is not well-formed JSON{where}."
-            + " It is a web page, perhaps one that asks to log in." * data.lstrip().startswith(b"<")
-            + " It contains the marks of a merge conflict." * (b"\n<<<<<<< " in data)
+            + (" It is a web page, perhaps one that asks to log in." if is_page else "")
+            + (" It contains the marks of a merge conflict." if b"\n<<<<<<< " in data else "")
         ) from None
     if not isinstance(notebook, dict) or not {"cells", "worksheets"} & set(notebook):
         raise Unfit("Not a notebook: it has no cells.")
