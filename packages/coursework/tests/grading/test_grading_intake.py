@@ -325,10 +325,7 @@ def test_github_classroom(tmp_path):
     for user in ("jane-doe", "bob"):
         put(tmp_path, f"homework-1-{user}", handed_in())
         (tmp_path / f"homework-1-{user}" / ".git" / "objects").mkdir(parents=True)
-        for number in range(30):
-            (tmp_path / f"homework-1-{user}" / ".git" / "objects" / f"{number:038x}").write_bytes(
-                b"x"
-            )
+        (tmp_path / f"homework-1-{user}" / ".git" / "objects" / "00ab").write_bytes(b"x")
         (tmp_path / f"homework-1-{user}" / "README.md").write_text("read me")
     notebooks, refused = intake.take_in(tmp_path, ["turns"])
     assert sorted(one.student for one in notebooks) == ["bob", "jane-doe"] and refused == []

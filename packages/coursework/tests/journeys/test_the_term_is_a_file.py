@@ -230,8 +230,10 @@ def test_who_handed_in_what_is_damaged_did_not_hand_in_nothing(course):
         for row in course.table("course/course.csv")
     }
     assert totals["ben"] == totals["dan"] == ("", "damaged") and totals["cem"][1] == "missing"
-    page = (course.marks / "course" / "students" / "ben.html").read_text()
-    assert "your file has not been graded, because a person has to look at it first" in page
+    assert (
+        "your file has not been graded, because a person has to look at it first"
+        in (course.marks / "course" / "students" / "ben.html").read_text()
+    )
     course.run("export", "marks", "--nbgrader", "grades.csv", "--assignment", "hw1")
     rows = read_table(course.place / "grades.csv")
     assert [row["student_id"] for row in rows] == ["ada", "cem"]

@@ -248,24 +248,31 @@ LANGUAGES = {
 }
 
 
+#: The words of all languages for each of these columns, with plain apostrophes.
+IN_ALL = {
+    ours: tuple(words[place].casefold().replace("’", "'") for words in LANGUAGES.values())
+    for place, ours in enumerate(MOODLE)
+}
+
+
 def in_english(header: Iterable[str]) -> tuple[dict[str, str], str]:
     """Translate the columns of a Moodle worksheet into English, and return its word for "no".
 
     The language is recognised by the two columns that every worksheet has: the identifier and the
-    grade.
+    grade. A spreadsheet may have made an apostrophe plain.
 
     >>> in_english(["ID", "Vollst\xe4ndiger Name", "Bewertung"])
     ({'id': 'identifier', 'vollst\xe4ndiger name': 'full name', 'bewertung': 'grade'}, 'nein')
     >>> in_english(["Student", "ID", "Section"])
     ({}, 'no')
     """
-    there = {name.strip().casefold() for name in header}
+    there = {name.replace("’", "'"): name for name in (one.strip().casefold() for one in header)}
     for *words, no in LANGUAGES.values():
         known = {
-            theirs.casefold(): ours
+            there[theirs]: ours
             for ours, word in zip(MOODLE, words, strict=True)
-            for theirs in word.split("|")
-            if theirs and theirs.casefold() in there
+            for theirs in word.casefold().replace("’", "'").split("|")
+            if theirs and theirs in there
         }
         if {"identifier", "grade"} <= set(known.values()):
             return known, no.casefold()

@@ -11,18 +11,20 @@ from pathlib import Path, PurePosixPath
 from typing import TypeVar
 
 from ..record import Identity
-from .languages import in_english
+from .languages import IN_ALL, in_english
 
 Key = TypeVar("Key")
 
-#: The names of the columns in rosters and exported gradebooks, by what they contain.
+#: The names of the columns in rosters and exported gradebooks, by what they contain. Moodle's table
+#: of participants is in the language of its user.
 COLUMNS = {
     "own": (
         "sid", "student", "student id", "student_id", "username", "user name", "login",
         "sis login id", "sis user id", "integration id", "id number", "orgdefinedid", "identifier",
+        "matrikelnummer", *IN_ALL["id number"], *IN_ALL["username"],
     ),
     "name": ("name", "full name", "student name"),
-    "email": ("email", "email address", "e-mail", "e-mail address"),
+    "email": ("email", "email address", "e-mail", "e-mail address", *IN_ALL["email address"]),
     "canvas": ("canvas", "canvas id"),
     "canvas anonymous": ("canvas anonymous",),
     "moodle": ("moodle", "moodle id"),
@@ -31,8 +33,9 @@ COLUMNS = {
     "handed in as": ("handed in as",),
 }  # fmt: skip
 FIRST, LAST = (
-    ("first name", "first_name", "firstname"),
-    ("last name", "last_name", "lastname", "surname"),
+    ("first name", "first_name", "firstname", "vorname", "prénom", "nombre", "voornaam"),
+    ("last name", "last_name", "lastname", "surname")
+    + ("nachname", "nom de famille", "apellido(s)", "achternaam"),
 )
 WORDS = {
     "own": "the name of the folder",
@@ -257,7 +260,7 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
     if repeated:
         raise BadRoster(f"{path}: two columns are called {repeated[0]!r}.")
     english, _ = in_english(header)
-    header = [english.get(name, name) for name in header]
+    header = [english.get(name, name).replace("’", "'") for name in header]
     for number, cells in lines:
         yield number, dict(zip(header, cells))
 
@@ -304,7 +307,7 @@ def _called(line: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
         # This is nbgrader's list.
         row.setdefault("student id", row.pop("id"))
     known = {
-        kind: [value for name in names if (value := row.get(name, "").lstrip("#"))]
+        kind: [value for name in dict.fromkeys(names) if (value := row.get(name, "").lstrip("#"))]
         for kind, names in COLUMNS.items()
     }
     first, last = (
