@@ -292,6 +292,7 @@ SAID = [
         lines(lambda k: f"10/25/2026 02:59:{k / 10:04.1f} AM", f"time,{SIX}"),
         "time, in s|",
     ),
+    (lines(lambda k: f"25/10/2026 9:05:{k / 10:04.1f}", f"time,{SIX}"), "time, in s|"),
     (lines(lambda k: f"9:05:{k / 100:06.3f} -> {k}", f"time,count,{SIX}"), "time, in s|count|"),
     (
         lines(lambda k: k, f"time (ms),{SIX},motionYaw(rad),motionPitch(rad),rollDeg", columns=10),

@@ -52,6 +52,8 @@ MISSING = {"", "nan", "null", "none", "na", "n/a", "-", "--"}
 LABELLED = re.compile(r"(?<![\w.])([A-Za-z_]\w*)\s*[:=]\s*([^\s,;|]+)")
 #: The Arduino IDE's time and arrow before a line, perhaps with a first field that is a number.
 STAMP = re.compile(r"^(\s*\d+:\d\d:\d\d[.\d]*) -> (?=\s*([-+]?[.\d][-+.e\d]*\s*[,;|\t])?)")
+#: The first two numbers of a date that a time follows.
+DATE = re.compile(r"(?<!\d)(\d\d?)/(\d\d?)(?=/\d{4} )")
 #: The fewest rows of a table.
 FEWEST = 8
 #: The most kinds of lines in a log. If the first column has more words, they only label its rows.
@@ -144,6 +146,13 @@ def read_tables(source: Source, name: str | None = None) -> list[Table]:
     >>> table.values.shape
     (9, 6)
 
+    A day and a month, of which the one that changes at midnight is the day:
+
+    >>> days = [f"{day}/2/2026 0:00:0{k}.5,{k},{k * k}" for day in (1, 2) for k in range(8)]
+    >>> [table] = read_tables("\\n".join(days))
+    >>> float(table.values[8, 0] - table.values[0, 0])
+    86400.0
+
     One object of JSON to a line, or one list:
 
     >>> [table] = read_tables("\\n".join(f'{{"t": {k}, "acc": [{k}, 2]}}' for k in range(9)))
@@ -162,10 +171,9 @@ def read_tables(source: Source, name: str | None = None) -> list[Table]:
     for path in paths:
         if not path.exists():
             raise RecordingError(f"no such file: {path}")
-        inside = sorted(path.rglob("*")) if path.is_dir() else [path]
         files |= {
             one: None
-            for one in inside
+            for one in (sorted(path.rglob("*")) if path.is_dir() else [path])
             if one == path or one.is_file() and one.suffix.lower() in TEXTS
         }
     if [*files] == paths and len(paths) == 1:
@@ -246,6 +254,11 @@ def _from_several(files: Iterable[tuple[str, Callable[[], bytes]]], name: str) -
 def _from_text(text: str, name: str) -> list[Table]:
     if text.lstrip()[:1] in "[{":
         return _from_json(text, name)
+    # A date such as 1/2/2026 may have the day or the month first. The day is the number that is
+    # above 12, or that changes more often.
+    days, months = ({date[place] for date in DATE.findall(text)} for place in (0, 1))
+    if len(days) > len(months) or any(int(day) > 12 for day in days):
+        text = DATE.sub(r"\2/\1", text)
     lines = text.splitlines()
     names, rows = _labels(lines, text)
     if names:
@@ -327,9 +340,8 @@ def _labelled(line: str) -> tuple[tuple[str, ...], list[str]]:
 def _split(line: str, delimiter: str | None) -> list[str]:
     if delimiter is None:
         return line.split()
-    if '"' in line:
-        return [field.strip() for field in next(csv.reader([line], delimiter=delimiter))]
-    return [field.strip() for field in line.split(delimiter)]
+    fields = next(csv.reader([line], delimiter=delimiter)) if '"' in line else line.split(delimiter)
+    return [field.strip() for field in fields]
 
 
 def _is_comma(field: str) -> bool:
@@ -342,8 +354,8 @@ def _number(field: str, comma: bool = False) -> float | None:
         return float(field.replace(",", ".") if comma else field)
     if ":" not in field:
         return float("nan") if field.lower() in MISSING else None
-    # A date, which may have the day first and points, or the month first and strokes, with a time,
-    # or a time alone. The hour may have one digit, and half a day after it.
+    # A date, which has the day first and points, or the month first and strokes, with a time, or a
+    # time alone. The hour may have one digit, and half a day after it.
     field = re.sub(
         r"^(.* )?(\d\d?)(:[\d:.]+) ?([ap])\.?m\.?$",
         lambda at: f"{at[1] or ''}{int(at[2]) % 12 + 12 * (at[4] == 'p')}{at[3]}",
@@ -481,14 +493,14 @@ def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
     # not.
     most = max(range(len(bare)), key=lambda k: (len(set(bare[k])), k))
     names = bare[most]
-    below = bare[-1]
-    if most < len(bare) - 1 and len(below) == len(names):
+    if most < len(bare) - 1 and len(bare[-1]) == len(names):
         names = [
             f"{name} [{unit.strip('()[]')}]" if unit else name
-            for name, unit in zip(names, below, strict=True)
+            for name, unit in zip(names, bare[-1], strict=True)
         ]
-    names = [*names, *[""] * width][:width]
-    return [name or f"column {k + 1}" for k, name in enumerate(names)]
+    return [
+        name or f"column {k}" for k, name in enumerate([*names, *[""] * width][:width], start=1)
+    ]
 
 
 def _from_log(
