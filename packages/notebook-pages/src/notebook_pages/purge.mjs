@@ -78,13 +78,13 @@ const css = sheet === "--of" ? "" : readFileSync(sheet, "utf8");
 if (sheet === "--of") writeFileSync(notes, JSON.stringify(namesOf(files[0])));
 else if (files[0] === "--later") {
   // Number the rules. The rules that remain for the pages alone are needed at once. The reader's actions that need no
-  // script, such as pointing at something, are replaced by [open], which always exists. Rules with an address are kept
-  // too, because the address would mean something else in another file.
+  // script, such as pointing at something, are replaced by [open], which always exists, but no words in brackets, such
+  // as "data:". Rules with an address are kept too, because the address would mean something else in another file.
   const root = require("postcss").parse(css);
   let count = 0;
   root.walkRules((rule) => rule.append({ prop: "--rule", value: String(count++) }));
   const stateless = root.clone();
-  stateless.walkRules((rule) => (rule.selector = rule.selector.replace(/::?[a-z-]+(?![a-z(/-])/g, "[open]")));
+  stateless.walkRules((rule) => (rule.selector = rule.selector.replace(/(\[[^\]]*\])|::?[a-z-]+(?![a-z(-])/g, (_, brackets) => brackets ?? "[open]")));
   const atOnce = new Set((await purged(stateless.toString(), [])).match(/(?<=--rule: ?)\d+/g));
   root.walkRules((rule) => {
     if (/url\((?!["']?data:)/.test(rule)) atOnce.add(rule.last.value);

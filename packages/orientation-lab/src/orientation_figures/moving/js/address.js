@@ -4,7 +4,7 @@
 
 const ADDRESS_VERSION = 1, LONGEST_ADDRESS = 6000;
 const NEWER_ADDRESS = 'This address was made by a newer edition of the book than this page. Reload the page.';
-const CUT_ADDRESS = 'This address is incomplete. Copy it again, to its last character.';
+const CUT_ADDRESS = 'This address is incomplete, or its letters were changed from capitals to small ones. Copy it again, to its last character.';
 const LONG_ADDRESS = 'This is too long for an address, which some programs would cut off. Send it as a file or in a message.';
 
 function finite(name, value) {

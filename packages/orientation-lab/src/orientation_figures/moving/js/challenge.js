@@ -1,8 +1,8 @@
-import { AXES, axisAngleFromDcm, degrees, IDENTITY, multiply, radians, transpose } from './mathematics.js';
+import { AXES, axisAngleFromDcm, degrees, IDENTITY, multiply, radians, transpose, wrapped } from './mathematics.js';
 import { picture, SIZE } from './challenge_picture.js';
 import { chain, partly } from './common_picture.js';
 import { button, change, choice, element, fixed, follow, followTurn, group, liveText, numberTable, onceAFrame,
-  open, plain, plainDegrees, player, put, readout, Sheet, slider, stage, wrapped, write } from './shared.js';
+  open, plain, plainDegrees, player, put, readout, Sheet, slider, stage, write } from './shared.js';
 import { hatted } from './words_picture.js';
 
 const MOST = 20, CLOSE = radians(2), SECONDS = 6;

@@ -35,7 +35,7 @@ export const sequencesOf = (side, programs) => programs[side.program]?.sequences
 export function read(side, text) {
   const numbers = (decimalPoints(text).replace(MINUS, '-').replace(APART, (_, before) => `${before}-`).match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
   const commas = numbers.length > wanted && /\d,\d/.test(text) ? ' Write 0.5 for one half: a comma separates two numbers.' : '';
-  if (numbers.length !== wanted) throw new Error(`There ${numbers.length === 1 ? 'is' : 'are'} ${several(numbers.length, 'number')} here, but ${side.form} needs ${wanted}.${commas}`);
+  if (numbers.length !== wanted) throw new Error(`There ${numbers.length === 1 ? 'is' : 'are'} ${several(numbers.length, 'numbers')} here, but ${side.form} needs ${wanted}.${commas}`);
   let dcm = null, said = '';
   if (side.form === 'matrix') {
     dcm = [0, 3, 6].map((k) => numbers.slice(k, k + 3));

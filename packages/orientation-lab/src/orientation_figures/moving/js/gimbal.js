@@ -1,8 +1,8 @@
 import { add, AXES, degrees, dot, gimbalLockMargin, length, PROPER_EULER, radians, scale, SEQUENCES,
-  subtract } from './mathematics.js';
+  several, subtract, wrapped } from './mathematics.js';
 import { device, INNER, OUTER, picture, SIZE, SYMBOLS } from './gimbal_picture.js';
 import { button, change, choice, element, fixed, follow, followTurn, glide, group, liveText, numberTable,
-  onceAFrame, open, plain, put, readout, Sheet, slider, stage, wrapped, write } from './shared.js';
+  onceAFrame, open, plain, put, readout, Sheet, slider, stage, write } from './shared.js';
 import { hatted, turned } from './words_picture.js';
 
 const BOUNDS = [-180, -185, 200, 185], NAMES = ['psi', 'theta', 'phi'];
@@ -62,8 +62,7 @@ export function render({ model, el }) {
       lit = i === undefined ? null : [i, j];
       redraw();
     } });
-  const bar = element('div', { class: 'bar', role: 'meter', 'aria-label': 'Margin to gimbal lock', 'aria-valuemin': '0',
-    'aria-valuemax': '90' }, element('span'));
+  const bar = element('div', { class: 'bar', role: 'meter', 'aria-label': 'Margin to gimbal lock', 'aria-valuemin': '0', 'aria-valuemax': '90' }, element('span'));
   const margin = element('span', { class: 'value' });
   const text = liveText();
   const more = model.get('more') !== false;
@@ -85,7 +84,7 @@ export function render({ model, el }) {
     write(margin, `${apart}°`);
     put(bar.firstChild, 'style', `width:${(apart / 0.9).toFixed(1)}%`);
     put(bar, 'aria-valuenow', apart);
-    put(bar, 'aria-valuetext', `${apart} degree${apart === '1' ? '' : 's'}`);
+    put(bar, 'aria-valuetext', several(apart, 'degrees'));
     sheet.draw(() => {
       picture(sheet, gimbal, close, lit);
       sheet.gripLine(PLACES.B(gimbal, 40), 'B');

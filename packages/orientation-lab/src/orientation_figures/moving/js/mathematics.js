@@ -11,7 +11,7 @@ export const AXES = ['x', 'y', 'z'];
 export const SEQUENCES = [...PROPER_EULER, ...TAIT_BRYAN];
 export const IDENTITY = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 const TOLERANCE = 1e-9;
-export const several = (count, noun) => `${count} ${noun}${count === 1 ? '' : 's'}`;
+export const several = (count, nouns) => `${count} ${Math.abs(count) === 1 ? nouns.replace(/s$/, '') : nouns}`;
 
 // Vectors and matrices.
 
@@ -51,6 +51,8 @@ export const distance = (first, second) => Math.hypot(...first.flatMap((row, k) 
 
 export const degrees = (angle) => angle * 180 / Math.PI;
 export const radians = (angle) => angle * Math.PI / 180;
+// Bring an angle into the range from -pi to pi. Both ends stay as they are, apart from rounding: they are those of a slider.
+export const wrapped = (angle) => angle - 2 * Math.PI * Math.sign(angle) * Math.ceil(Math.abs(angle) / (2 * Math.PI) - 0.500001);
 
 // Loops, as in the pictures translated from Python.
 

@@ -199,7 +199,7 @@ function posesOf(rows, name, kind, half) {
   const place = total > 4 && total !== 12 && four ? quaternionAmong([flat], half) : null;
   if (place !== null) return [flat.slice(place, place + 4)];
   const where = rows.length === 1 ? 'one line' : `${rows.length} lines`;
-  throw new Error(`the ${name} side contains ${several(total, 'number')} in ${where}: a pose takes 3 (angles, or a rotation `
+  throw new Error(`the ${name} side contains ${several(total, 'numbers')} in ${where}: a pose takes 3 (angles, or a rotation `
     + 'vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) or 16 (a matrix with a translation); '
     + 'leave out positions, except beside a quaternion (four consecutive numbers of length 1)');
 }
@@ -860,7 +860,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
     counts[which] = 1;
   }
   if (counts[0] !== counts[1]) {
-    throw new Error(`the first side has ${several(counts[0], 'pose')} and the second ${counts[1]}: give the same poses on both sides, in the same order`);
+    throw new Error(`the first side has ${several(counts[0], 'poses')} and the second ${counts[1]}: give the same poses on both sides, in the same order`);
   }
   // The text overrides the manual, and the reader overrides both.
   const declared = sides.map((poses, k) => ({ ...programs[k]?.declared, ...poses.declared, ...given[k][2] }));

@@ -1,8 +1,8 @@
 import { AXES, bodyFixedFromDcm, dcmFromBodyFixed, dcmFromQuaternion, degrees, dot, length,
-  quaternionFromDcm, radians, scale, slerp, transpose } from './mathematics.js';
+  quaternionFromDcm, radians, scale, slerp, transpose, wrapped } from './mathematics.js';
 import { picture, SIZE } from './phone_picture.js';
 import { button, change, element, fixed, follow, group, liveText, numberTable, onceAFrame, open,
-  plainDegrees, player, readout, Sheet, slider, stage, wrapped } from './shared.js';
+  plainDegrees, player, readout, Sheet, slider, stage } from './shared.js';
 import { hatted } from './words_picture.js';
 
 const GRAVITY = 9.80665, RECORD_SECONDS = 10, PATIENCE = 3000;

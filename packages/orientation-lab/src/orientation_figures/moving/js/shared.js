@@ -1,7 +1,7 @@
 // Shared parts of the moving figures: a sheet to draw on, in the style of orientation_figures.drawing, and
 // controls for pointer, touch and keyboard. Each figure is a module with render({ model, el }), anywidget's
 // contract; on a page of the book without a kernel, `start` gives it a model of its own.
-import { add, degrees, dot, length, multiply, radians, scale, simpleDcm, subtract, times, transpose, unit } from './mathematics.js';
+import { add, degrees, dot, length, multiply, radians, scale, several, simpleDcm, subtract, times, transpose, unit } from './mathematics.js';
 import { carriedBy, fragmentOf } from './address.js';
 import { LABELS, OUTLINES } from './glyphs.js';
 import { Model } from './model.js';
@@ -302,9 +302,6 @@ export function followSphere(sheet, { vector, at }) {
   };
 }
 
-// Bring an angle into the range from -pi to pi, and leave both of these as they are: they are the ends of a slider.
-export const wrapped = (angle) => angle - 2 * Math.PI * Math.sign(angle) * Math.ceil(Math.abs(angle) / (2 * Math.PI) - 0.5);
-
 // ---- controls ------------------------------------------------------------------------------------------
 
 export const button = (text, click, attributes = {}) => element('button', { type: 'button', click, ...attributes }, text);
@@ -353,7 +350,7 @@ export function slider({ symbol, name, unit: unitName = 'degrees', sign = '°', 
     show(value) {
       const shown = plain(value / factor, digits);
       if (range.value !== shown) range.value = shown;
-      put(range, 'aria-valuetext', `${name}, ${shown} ${Math.abs(shown) === 1 ? unitName.replace(/s$/, '') : unitName}`);
+      put(range, 'aria-valuetext', `${name}, ${several(shown, unitName)}`);
       field.show(value / factor);
       write(rest, more(value));
     },
@@ -545,12 +542,15 @@ function alike(value, known) {
 
 // Return the state of a figure from the address of its page, by its label or kind; if it is alone, by any name.
 function carriedTo(figure, name, state) {
+  const label = figure.parentElement?.closest('figure[id], div[id]')?.id;
   try {
-    const carried = carriedBy(location.hash), label = figure.parentElement?.closest('figure[id], div[id]')?.id;
+    const carried = carriedBy(location.hash);
     if (!carried || (label && ![name, label].includes(carried.place))) return {};
     return Object.fromEntries(Object.entries(carried.content).filter(([key, value]) => key in state && alike(value, state[key])));
-  } catch {
-    return {};   // an incomplete address opens the figure in its initial state
+  } catch (error) {
+    // An address that cannot be read opens the figure that it names in its initial state, and says so.
+    if (!label || [name, label].some((place) => location.hash.startsWith(`#${place}=`))) figure.before(element('p', { role: 'alert' }, error.message));
+    return {};
   }
 }
 

@@ -1,7 +1,7 @@
-import { AXES, degrees, IDENTITY, radians, scale, simpleDcm } from './mathematics.js';
+import { AXES, degrees, IDENTITY, radians, scale, simpleDcm, wrapped } from './mathematics.js';
 import { picture, REACH, SIZE } from './simple_picture.js';
 import { button, change, choice, element, fixed, follow, followTurn, group, liveText, numberTable, onceAFrame,
-  open, plain, plainDegrees, readout, Sheet, slider, stage, wrapped } from './shared.js';
+  open, plain, plainDegrees, readout, Sheet, slider, stage } from './shared.js';
 import { hatted } from './words_picture.js';
 
 const FLAT = 84;

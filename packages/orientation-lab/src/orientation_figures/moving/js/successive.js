@@ -1,8 +1,8 @@
-import { add, AXES, axisAngleFromDcm, degrees, IDENTITY, multiply, simpleDcm, transpose } from './mathematics.js';
+import { add, AXES, axisAngleFromDcm, degrees, IDENTITY, multiply, simpleDcm, transpose, wrapped } from './mathematics.js';
 import { chain, partly } from './common_picture.js';
 import { axisOf, COMPARISONS, LETTERS, picture, secondChain, SIZE } from './successive_picture.js';
 import { button, change, choice, element, fixed, follow, followTurn, group, liveText, numberTable,
-  onceAFrame, open, player, put, readout, Sheet, slider, stage, wrapped, write, writeWords } from './shared.js';
+  onceAFrame, open, player, put, readout, Sheet, slider, stage, write, writeWords } from './shared.js';
 
 const SECONDS = 6;
 const [NOTHING, ...PAIRS] = COMPARISONS, OTHER = PAIRS.pop();

@@ -1,9 +1,9 @@
 import { AXES, bodyFixedFromDcm, dcmFromAxisAngle, degrees, dot, gimbalLockMargin, IDENTITY, length,
-  multiply, quaternionFromAxisAngle, radians, scale, SEQUENCES, simpleDcm, subtract, unit } from './mathematics.js';
+  multiply, quaternionFromAxisAngle, radians, scale, SEQUENCES, simpleDcm, subtract, unit, wrapped } from './mathematics.js';
 import { around } from './common_picture.js';
 import { KNOB, picture, REACH, SIZE } from './triad_picture.js';
 import { button, change, choice, element, fixed, follow, followSphere, followTurn, group, liveText,
-  numberField, numberTable, onceAFrame, open, plainDegrees, readout, Sheet, slider, stage, wrapped } from './shared.js';
+  numberField, numberTable, onceAFrame, open, plainDegrees, readout, Sheet, slider, stage } from './shared.js';
 import { hatted, turned } from './words_picture.js';
 
 const ANGLES = ['$\\psi$', '$\\theta$', '$\\varphi$'];

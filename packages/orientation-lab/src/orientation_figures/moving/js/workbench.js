@@ -200,7 +200,7 @@ const linked = ([[section, title], ...questions]) => [element('a', { href: secti
 function wasRead(found, k, table) {
   const { kinds, numbers } = found.sides[k], reading = found.chains[0]?.[k ? 'second' : 'first'], choices = reading?.choices ?? {};
   const how = reading ? table.kinds[reading.kind].map(({ group }) => told(group, choices[group])).filter(Boolean).join(', ') : '';
-  return [`Read as ${several(numbers.length, 'pose')}: ${reading?.kind ?? kinds.join(' or ')}${how && `, ${how}`}.`,
+  return [`Read as ${several(numbers.length, 'poses')}: ${reading?.kind ?? kinds.join(' or ')}${how && `, ${how}`}.`,
     ...(found.remarks ?? []).filter((remark) => remark.includes(`the ${['first', 'second'][k]} side`))].join(' ');
 }
 
@@ -235,8 +235,8 @@ function answer(found, table, declare) {
   const others = found.chains.slice(1);
   if (others.length) {
     const first = others.slice(0, 60).map((chain) => element('li', {}, chain.words || 'both mean the same'));
-    const rest = others.length > 60 ? [element('li', {}, `and ${several(others.length - 60, 'more reading')}`)] : [];
-    parts.push(element('details', {}, element('summary', {}, `${several(others.length, 'other reading')} ${others.length === 1 ? 'fits' : 'fit'} as well`),
+    const rest = others.length > 60 ? [element('li', {}, `and ${several(others.length - 60, 'more readings')}`)] : [];
+    parts.push(element('details', {}, element('summary', {}, `${several(others.length, 'other readings')} ${others.length === 1 ? 'fits' : 'fit'} as well`),
       element('ul', {}, ...first, ...rest)));
   }
   return parts;

@@ -6,7 +6,7 @@
 // the three angles are longitude, height and roll.
 import { AXES, IDENTITY, SEQUENCES, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
   dcmFromQuaternion, dot, length, multiply, quaternionFromDcm, scale, simpleDcm, slerp, subtract,
-  times, transpose, unit } from '../../moving/js/mathematics.js';
+  times, transpose, unit, wrapped } from '../../moving/js/mathematics.js';
 import { quaternionAt } from '../../moving/js/belt_picture.js';
 import { STOPS } from './stops.js';
 
@@ -60,7 +60,6 @@ export function anglesNear(dcm, before) {
   return far(near[0]) <= far(near[1]) ? near[0] : near[1];
 }
 
-export const wrapped = (angle) => angle - 2 * PI * Math.sign(angle) * Math.ceil(Math.abs(angle) / (2 * PI) - 0.500001);
 // Rotate a vector about an axis; the rows of the matrix are the rotated unit vectors.
 export const turned = (axis, angle, vector) => times(transpose(dcmFromAxisAngle(axis, angle)), vector);
 // Rotate a frame like an object in the room.

@@ -1,18 +1,18 @@
 // The figure of the essay in the page: it stays while the text scrolls past and moves it, and the reader may take hold
 // of it at any moment. What is shown follows the goal smoothly, a little later.
 import { carriedBy, fragmentOf } from '../../moving/js/address.js';
-import { add, dot, length, quaternionFromDcm, scale, times, transpose, unit } from '../../moving/js/mathematics.js';
+import { add, dot, length, quaternionFromDcm, scale, several, times, transpose, unit, wrapped } from '../../moving/js/mathematics.js';
 import { calm, element, put, words, write } from '../../moving/js/shared.js';
 import { LABELS } from '../../moving/js/glyphs.js';
 import { Sensors } from '../../moving/js/phone.js';
 import { AT_READER, COURSE, CROOKED, EYES, FROM, LASTS, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
-  project, sceneOf, turnOf, turnedAlong, turnedFrame, wholeWays, wrapped } from './scene.js';
+  project, sceneOf, turnOf, turnedAlong, turnedFrame, wholeWays } from './scene.js';
 import { Painter } from './paint.js';
 import { STOPS } from './stops.js';
 
 const PLACE = 'rotations';
 const DEGREES = 180 / Math.PI, PI = Math.PI;
-const say = (angle, whole = Math.round(angle * DEGREES)) => `${whole} degree${Math.abs(whole) === 1 ? '' : 's'}`;
+const say = (angle) => several(Math.round(angle * DEGREES), 'degrees');
 // What the reader can set: its name, minimum, maximum, step, units per unit of the state, and the sign of the unit.
 const DIALS = {
   psi: ['first motor', -180, 180, 1, DEGREES, '°', 0], theta: ['second motor', -180, 180, 1, DEGREES, '°', 1], phi: ['third motor', -180, 180, 1, DEGREES, '°', 2],
@@ -568,7 +568,7 @@ class World {
       const shown = String(Number((now * factor + zero).toFixed(factor === 1 ? 1 : 0)) + 0);
       if (document.activeElement !== field || !this.set.has(name)) field.value = shown;
       write(value, `${shown}${sign}`.replace('-', '\u2212'));
-      put(field, 'aria-valuetext', `${title}: ${shown} ${{ '°': 'degrees', '%': 'per cent', ' s': 'seconds' }[sign].replace(Math.abs(shown) === 1 ? /s$/ : '', '')}`);
+      put(field, 'aria-valuetext', `${title}: ${several(shown, { '°': 'degrees', '%': 'per cent', ' s': 'seconds' }[sign])}`);
     }
   }
 
