@@ -33,6 +33,19 @@ def test_a_symbol_brings_places_or_what_to_try(page, symbol, reply):
     expect(page.locator("#search-results .found-count")).to_contain_text(reply)
 
 
+@pytest.mark.parametrize(
+    ("address", "words"),
+    [
+        ("chapters/euler-angles.html#no-such-place", "This page no longer has the place"),
+        ("workbench.html#workbench=1.eyjmaxjzdci6", "letters were changed from capitals"),
+    ],
+)
+def test_a_link_that_leads_nowhere_says_so(page, site, address, words):
+    tab = page.context.new_page()
+    tab.goto(site + address)
+    expect(tab.locator(".bd-article")).to_contain_text(words)
+
+
 def first_place(page, words):
     """Return the address and the title of the first place that the search shows for ``words``."""
     search(page, words)
@@ -45,9 +58,13 @@ def test_four_letters_of_a_title_bring_its_chapter_first(page):
     chapters = page.evaluate(CHAPTERS)
     assert len(chapters) == 21
     # Four chapters begin with the same letters, and only one of them can be first.
-    letters = {title.removeprefix("The ")[:4] for _, title in chapters}
-    brought = {tuple(first_place(page, word))[0] for word in letters}
+    brought = {
+        tuple(first_place(page, word))[0]
+        for word in {title.removeprefix("The ")[:4] for _, title in chapters}
+    }
     assert len(brought & {address for address, _ in chapters}) >= 18
+    with page.context.expect_page():
+        page.keyboard.press("Control+Enter")
 
 
 @pytest.mark.parametrize(

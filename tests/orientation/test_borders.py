@@ -69,6 +69,7 @@ def test_exact_numbers_cross():
 def test_frames_are_oriented_by_a_scipy_rotation():
     rotation = Rotation.from_euler("ZXY", (0.1, 0.2, 0.3))
     frames = orientation.Frames().orient_scipy_rotation("A", "N", rotation)
-    expected = orientation.dcm_from_body_fixed((0.1, 0.2, 0.3), "zxy")
-    np.testing.assert_allclose(frames.dcm("A", "N"), expected, atol=1e-14)
+    np.testing.assert_allclose(
+        frames.dcm("A", "N"), orientation.dcm_from_body_fixed((0.1, 0.2, 0.3), "zxy"), atol=1e-14
+    )
     assert "SciPy rotation" in str(frames.equation("A", "N"))

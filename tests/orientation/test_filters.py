@@ -232,5 +232,6 @@ def test_a_smoother_is_the_least_squares_of_all_that_was_seen():
     np.testing.assert_allclose(rotation_vector_from_dcm(smoothed.dcm)[:, 2], best[::2], atol=1e-9)
     np.testing.assert_allclose(smoothed.bias[:, 2], best[1::2], atol=1e-8)
     for k, place in ((2, 0), (5, 1)):
-        variances = np.diag(covariance)[place::2]
-        np.testing.assert_allclose(smoothed.covariance[:, k, k], variances, rtol=1e-3)
+        np.testing.assert_allclose(
+            smoothed.covariance[:, k, k], np.diag(covariance)[place::2], rtol=1e-3
+        )

@@ -491,8 +491,9 @@ def test_names_of_other_programs_are_names():
 def test_a_vector_is_expressed_along_another_frame():
     frames = Frames().orient_axis("A", "N", "z", np.pi / 2)
     np.testing.assert_allclose(frames.express((1, 0, 0), "A", "N"), (0, -1, 0), atol=1e-15)
-    many = frames.express(np.eye(3), "A", "N")
-    np.testing.assert_allclose(many, frames.dcm("A", "N").T, atol=1e-15)
+    np.testing.assert_allclose(
+        frames.express(np.eye(3), "A", "N"), frames.dcm("A", "N").T, atol=1e-15
+    )
     x, theta = sm.symbols("x, theta")
     turned = Frames().orient_axis("A", "N", "z", theta)
     assert turned.express((x, 0, 0), "A", "N") == sm.Matrix(

@@ -206,8 +206,7 @@ def test_exponential_steps_have_their_order_and_stay_valid(order, tumbled):
         )
         assert dcms.shape == (count + 1, 3, 3)
         assert abs(dcms[-1] @ dcms[-1].T - np.eye(3)).max() < 1e-13
-        excess = dcms[-1] - tumbled
-        errors.append(np.linalg.norm(excess))
+        errors.append(np.linalg.norm(dcms[-1] - tumbled))
     assert abs(np.log2(errors[0] / errors[1]) - order) < 0.1
     assert errors[1] < {1: 0.1, 2: 1e-3, 4: 1e-6}[order]
 

@@ -30,8 +30,9 @@ def test_single_precision_stays_itself_and_is_accepted(batch):
     assert quaternion.dtype == back.dtype == np.float32
     np.testing.assert_allclose(back, dcm, atol=3e-7)
     assert o.same_orientation(back, np.broadcast_to(DCM, back.shape))
-    expected = np.broadcast_to((0.1, 0.2, 0.3), (*batch, 3))
-    np.testing.assert_allclose(o.body_fixed_from_dcm(back, "zxy"), expected, atol=1e-6)
+    np.testing.assert_allclose(
+        o.body_fixed_from_dcm(back, "zxy"), np.broadcast_to((0.1, 0.2, 0.3), (*batch, 3)), atol=1e-6
+    )
 
 
 def test_single_precision_is_held_to_its_own_digits():

@@ -136,7 +136,7 @@ def test_nothing_below_the_first_view_is_laid_out_or_measured_before_it_stands(o
 @pytest.mark.parametrize("size", SIZES)
 def test_in_the_end_every_block_stands_where_it_stands_on_a_page_laid_out_at_once(open_page, size):
     places = whole(open_page(LONG, size)).evaluate(PLACES)
-    at_once = open_page(LONG + "#no-such-place", size)
+    at_once = open_page(LONG + "#no=place", size)
     assert not at_once.evaluate("document.documentElement.matches('.in-parts')")
     assert whole(at_once).evaluate(PLACES) == places and len(places) > 50
 

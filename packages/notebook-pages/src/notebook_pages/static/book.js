@@ -40,10 +40,14 @@
   document.addEventListener("click", ({ target }) => target.closest("a[href*='#']") && whole(), true);
 }
 
-// On a busy machine, Chromium sometimes stays at the top of a page although the address names a place in it.
+// On a busy machine, Chromium sometimes stays at the top of a page although the address names a place in it. An old link
+// may name a place that is gone: say so. A name that carries the state of a figure has "=" in it.
+const arrives = performance.getEntriesByType("navigation")[0]?.type === "navigate";
 addEventListener("load", () => requestAnimationFrame(() => {
-  const arrives = performance.getEntriesByType("navigation")[0]?.type === "navigate";
-  if (arrives && !scrollY) document.getElementById(location.hash.slice(1))?.scrollIntoView();
+  const name = location.hash.slice(1), place = document.getElementById(name);
+  if (arrives && !scrollY) place?.scrollIntoView();
+  const gone = "This page no longer has the place that your link names. It may have been moved or renamed: try the search.";
+  if (!place && /^[\w-]+$/.test(name)) document.querySelector(".bd-article")?.prepend(Object.assign(document.createElement("p"), { className: "said", textContent: gone }));
 }));
 
 // Restore what the reader has moved, after Back and after a reload.
@@ -51,7 +55,7 @@ addEventListener("load", () => requestAnimationFrame(() => {
   const figures = () => [...document.querySelectorAll("figure.moving")];
   const moved = `moved ${location.pathname}`;
   addEventListener("pagehide", () => sessionStorage.setItem(moved, JSON.stringify(figures().map(({ model }) => model?.moved))));
-  if (performance.getEntriesByType("navigation")[0]?.type !== "navigate") figuresRan.then(() => {
+  if (!arrives) figuresRan.then(() => {
     const before = JSON.parse(sessionStorage.getItem(moved)) ?? [];
     figures().forEach(({ model }, place) => model?.move(before[place]));
   });

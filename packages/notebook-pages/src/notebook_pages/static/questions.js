@@ -155,11 +155,7 @@
     };
     commit.addEventListener("click", () => {
       const answer = way.answer();
-      if (answer === undefined) {
-        result.className = "result";
-        result.textContent = way.hint;
-        return;
-      }
+      if (answer === undefined) return Object.assign(result, { className: "result", textContent: way.hint });
       const right = show(answer);
       uncover();
       progress.change(({ answers }) => {
@@ -168,12 +164,15 @@
       });
     });
     way.element.addEventListener("keydown", ({ key, isComposing }) => key === "Enter" && !isComposing && commit.click());
-    skip.addEventListener("click", () => {
+    const open = () => {
+      uncover();
       fold.hidden = false;
       fold.open = true;
+    };
+    skip.addEventListener("click", () => {
+      open();
       fold.firstElementChild.focus();
       skip.hidden = true;
-      uncover();
     });
     if (before) {
       way.show(before.last);
@@ -188,11 +187,6 @@
     };
     addEventListener("hashchange", arrive);
     arrive();
-    const open = () => {
-      uncover();
-      fold.hidden = false;
-      fold.open = true;
-    };
     addEventListener("beforeprint", open);
     if (box.classList.contains("predict")) openers.push({ open, uncover });
   }

@@ -65,6 +65,8 @@ function attach(form) {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     const all = [field, ...links()], next = all[all.indexOf(document.activeElement) + step];
     if (next) event.preventDefault(), next.focus();
+    // In the field, these keys submit nothing; on a link, the browser opens a tab.
+    if (event.target === field && event.key === "Enter" && (event.ctrlKey || event.metaKey) && all[1]) open(all[1].href);
   };
   for (const part of [field, list]) part.addEventListener("keydown", move);
   // The dialog closes, as the answer may be a place on this page, below it.
