@@ -248,6 +248,11 @@ def lines(time, names="time", count=300, columns=7, head=""):
 SAID = [
     (lines(lambda k: 40 * k, f"time,{SIX}", head="Sample Rate: 100 Hz"), "time, in ms|"),
     (lines(lambda k: 10000 * k, f"time (ms),{SIX}"), "in us (its heading says ms)"),
+    (lines(lambda k: 10 * k, f"millis,{SIX}"), "millis, in ms|"),
+    (
+        lines(lambda k: (10_000 * k - 2_000_000) % 2**32, f"micros,{SIX}"),
+        "micros, in us, which passes 2³² and starts again at 0 (1 time)|",
+    ),
     (lines(lambda k: f"9:05:{k / 100:06.3f}", f"time,{SIX}"), "time, in s|"),
     (lines(lambda k: f"0:00:{k / 100:06.3f}", f"time,{SIX}"), "time, in s|"),
     (lines(lambda k: f"9:05:{k // 10:02}", f"time,{SIX}"), "time has the same value as in the row"),

@@ -1064,11 +1064,17 @@ class _Bench:
 
     def filter(self, progress: Callable[[float], None] | None) -> None:
         if self.time[-1] - self.time[0] < 1 or len(self.time) < 20:
-            words = f"{len(self.time)} samples in {self.time[-1]:.2g} s are not enough to judge it"
-            return self.say("filter", UNKNOWN, words)
+            return self.say(
+                "filter",
+                UNKNOWN,
+                f"{len(self.time)} samples in {self.time[-1]:.2g} s are not enough to judge it",
+            )
         if self.rates is None or self.forces is None or self.content.counted:
-            words = "it needs a gyroscope whose unit is known, an accelerometer, and a clock"
-            return self.say("filter", UNKNOWN, words)
+            return self.say(
+                "filter",
+                UNKNOWN,
+                "it needs a gyroscope whose unit is known, an accelerometer, and a clock",
+            )
         trouble = self._trouble()
         field = None if "field" in trouble else self.field
         lying = [stretch for stretch in self.still if stretch.still]
@@ -1209,7 +1215,13 @@ def _along(values: Array) -> str:
 
 def _centre(field: Array) -> Array:
     """Return a first estimate of a magnetometer's offset, the centre of a sphere, or zero."""
-    centre, radius = _sphere(field)
+    solution, *_ = np.linalg.lstsq(
+        np.concatenate([2 * field, np.ones((len(field), 1))], axis=1),
+        (field**2).sum(axis=1),
+        rcond=None,
+    )
+    centre = solution[:3]
+    radius = np.sqrt(max(solution[3] + centre @ centre, 0.0))
     spread = np.linalg.norm(field - centre, axis=1)
     # If the values cover only a small part of the sphere, its centre is undetermined.
     return (
@@ -1219,16 +1231,6 @@ def _centre(field: Array) -> Array:
         and spread.std() < 0.3 * radius
         else np.zeros(3)
     )
-
-
-def _sphere(points: Array) -> tuple[Array, float]:
-    """Return centre and radius of the sphere nearest to some points."""
-    solution, *_ = np.linalg.lstsq(
-        np.concatenate([2 * points, np.ones((len(points), 1))], axis=1),
-        (points**2).sum(axis=1),
-        rcond=None,
-    )
-    return solution[:3], float(np.sqrt(max(solution[3] + (solution[:3] ** 2).sum(), 0.0)))
 
 
 def _matrices(candidates: Mapping[str, Array], reading: Reading) -> Array:

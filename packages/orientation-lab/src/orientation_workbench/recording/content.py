@@ -49,7 +49,17 @@ COUNTER = r"counter|packet|number|index|frame|iteration|tick|\bsample\b(?! time)
 RATE = r"(?:rate|frequency)[\W_]*(\d+(?:\.\d+)?)\s*hz"
 #: The kinds of columns that the bench can use.
 PLAYED = ("accelerometer", "magnetometer", "gyroscope", "quaternion", "angles", "temperature")
-UNITS_OF_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
+UNITS_OF_TIME = {
+    "s": 1.0,
+    "ms": 1e-3,
+    "us": 1e-6,
+    "µs": 1e-6,
+    "μs": 1e-6,
+    "ns": 1e-9,
+    # An Arduino's functions, after which its columns are often named.
+    "millis": 1e-3,
+    "micros": 1e-6,
+}
 #: The magnitudes of gravity and of the Earth's field, which keep their direction, in common units.
 GRAVITY = {"g": 1.0, "m/s²": 9.80665, "mg": 1000.0, "cm/s²": 980.665}
 FIELD = {
@@ -351,7 +361,11 @@ def _clock(table: Table) -> Clock:
     words = f"{columns[k]}, in {said_units.get(scale, f'{scale:g} s')}"
     if named_unit and named_unit != scale:
         words += f" (its heading says {said_units[named_unit]})"
-    return Clock(k, values[:, k] * scale, words, False, rate)
+    # A counter of 32 bits, such as an Arduino's microseconds after 72 minutes, starts again at 0.
+    wraps = np.append(0, steps[:, k] < -(2.0**31)) * (values[:, k].max() < 2.0**32)
+    if wraps.any():
+        words += f", which passes 2³² and starts again at 0 ({number_of(wraps.sum(), 'time')})"
+    return Clock(k, (values[:, k] + 2.0**32 * wraps.cumsum()) * scale, words, False, rate)
 
 
 def _stem_and_axis(heading: str) -> tuple[str, str]:
