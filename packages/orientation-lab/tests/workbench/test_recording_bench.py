@@ -206,6 +206,7 @@ HEADINGS = {
         ("wx(deg/s)", ""),
         ("roll_rate_dps", ""),
         ("Drehrate x", ""),
+        ("GyX", ""),
     ],
     "accelerometer": [
         ("a_RS_S_x [m s^-2]", "data"),
@@ -214,6 +215,7 @@ HEADINGS = {
         ("Beschleunigung x", ""),
         ("x-axis (g)", "MetaWear_2024_Accelerometer_100.000Hz_1.7.3"),
         ("gFx", ""),
+        ("AcX", ""),
         ("acc_x_m/s^2", ""),
     ],
     "magnetometer": [("magnetometer_ga[0]", ""), ("MAGNETIC FIELD X (μT)", ""), ("hx(uT)", "")],
@@ -377,19 +379,19 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
         (b"ax:0.1 ay:0.2 az:0.3\nmx:0 my:20 mz:30\n" * 9, "not a table"),
         (b"ax:3,5 ay:3,25 az:3,75\n" * 9, "not a table"),
         (b"x:1 y:2 z:3 Gyro x:4 y:5 z:6\n" * 9, "not a table"),
+        (b"ULog\1", "ulog2csv"),
+        (b"\xd0\xcf\x11\xe0\0\0", "save it as CSV"),
     ):
         with pytest.raises(RecordingError, match=words):
             read_tables(content, "file")
-    for content, words in ((b"ULog\1", "ulog2csv"), (b"\xd0\xcf\x11\xe0\0\0", "save it as CSV")):
+    for names, words in (
+        ("time,price,count,age", "which columns come from which sensor. Its headings"),
+        ("time,roll,pitch,yaw", "It contains orientations"),
+    ):
         with pytest.raises(RecordingError, match=words):
-            read_tables(content, "file")
-    with pytest.raises(RecordingError, match="which columns come from which sensor"):
-        read_content(
-            "\n".join(
-                ["time,price,count,age", *(f"{k},{k * 3 % 7},{k % 5},{k % 3}" for k in range(50))]
+            read_content(
+                "\n".join([names, *(f"{k},{k * 3 % 7},{k % 5},{k % 3}" for k in range(50))])
             )
-        )
-    # As long as the Earth's field.
     with pytest.raises(RecordingError, match="right ascension"):
         examine(DATA / "bright_stars.csv")
     (tmp_path / "empty.csv").write_bytes(b"")

@@ -24,8 +24,8 @@ NAMES = {
     "linear acceleration": r"(?:user|lin|lineare?)(?: acc\w*| ?beschl\w*)?",
     "magnetometer": r"mag\w*|(?:magnetic )?field|[mbh]",
     "gyroscope": r"gyr\w*|angular (?:velocity|rate)|(?:rotation )?rate|omega|[gw]"
-    r"|drehrate|winkelg\w*",
-    "accelerometer": r"(?:total )?acc\w*|beschl\w*|(?:specific )?force|[af]",
+    r"|drehrate|winkelg\w*|gy",
+    "accelerometer": r"(?:total )?acc\w*|ac|beschl\w*|(?:specific )?force|[af]",
 }
 #: The names of rotations about z, y and x, or in phones about z, x and y.
 ANGLES = (
@@ -188,7 +188,7 @@ def read_content(
     remarks += more
     sensors = [chosen[kind] for kind in SENSORS if kind in chosen]
     if not sensors:
-        raise RecordingError(_question(tables[0], "quaternion" in chosen))
+        raise RecordingError(_question(tables[0], bool({"quaternion", "angles"} & chosen.keys())))
     unused += [
         ", ".join(group.names) + group.table
         for group in groups
