@@ -222,6 +222,7 @@ HEADINGS = {
     "linear acceleration": [
         ("LINEAR ACCELERATION X (m/s²)", ""),
         ("linAccX", ""),
+        ("FreeAcc_X", ""),
         ("Lineare Beschleunigung x", ""),
     ],
     "": [("velocity x (m/s)", ""), ("position.x", "fields"), ("dq_0", "")],
@@ -251,6 +252,9 @@ SAID = [
     (lines(lambda k: 40 * k, f"time,{SIX}", head="Sample Rate: 100 Hz"), "time, in ms|"),
     (lines(lambda k: 10000 * k, f"time (ms),{SIX}"), "in us (its heading says ms)"),
     (lines(lambda k: 10 * k, f"millis,{SIX}"), "millis, in ms|"),
+    # The address of a device is no time.
+    (lines(lambda k: f"{10 * k},WT9(d1:22)", f"millis,device,{SIX}"), "'gyroscope']|[]"),
+    (lines(lambda k: f"{10 * k},C0:83:12:5f:0a:11", f"millis,device,{SIX}"), "'gyroscope']|[]"),
     (
         lines(lambda k: (10_000 * k - 2_000_000) % 2**32, f"micros,{SIX}"),
         "micros, in us, which passes 2³² and starts again at 0 (1 time)|",

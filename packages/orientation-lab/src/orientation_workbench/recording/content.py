@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 NAMES = {
     "quaternion": r"quat\w*|orientation|attitude|q",
     "gravity": r"grav\w*",
-    "linear acceleration": r"(?:user|lin|lineare?)(?: acc\w*| ?beschl\w*)?",
+    "linear acceleration": r"(?:user|free|lin|lineare?)(?: acc\w*| ?beschl\w*)?",
     "magnetometer": r"mag\w*|(?:magnetic )?field|[mbh]",
     "gyroscope": r"gyr\w*|angular (?:velocity|rate)|(?:rotation )?rate|omega|[gw]"
     r"|drehrate|winkelg\w*|gy",

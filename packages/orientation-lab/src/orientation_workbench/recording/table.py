@@ -460,7 +460,7 @@ def _table(
             f"left out column {k + 1} ({columns[k]}): {sample[0][1][k][:30]!r} is a time of a form "
             "that we cannot read"
             for k in range(width)
-            if k not in numeric and re.search(r"\d:\d\d(?!\d)", sample[0][1][k])
+            if k not in numeric and re.search(r"(?<![\w:])\d?\d:\d\d(?!\d)", sample[0][1][k])
         ),
     ]
     table = np.array(kept, dtype=float)
