@@ -59,7 +59,7 @@ def layout_of(sequence: str) -> Layout:
             "cannot describe every orientation"
         )
     else:
-        cause = f"the twelve sequences are {', '.join(SEQUENCES)}"
+        cause = f"the twelve sequences are {', '.join(SEQUENCES)} (3-2-1 is zyx)"
     raise ValueError(f"{sequence!r} is not a sequence of Euler angles: {cause}")
 
 
