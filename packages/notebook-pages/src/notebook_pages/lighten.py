@@ -15,8 +15,9 @@ MOVED = re.compile(r"(?<=translate\()[^)]*")
 
 def tenths(numbers):
     """Return tenths as numbers, as a drawing writes them."""
-    text = " ".join(f"{number / 10:g}" for number in numbers)
-    return re.sub(r"(?<!\d)0(?=\.)", "", text).replace(" -", "-")
+    return re.sub(
+        r"(?<!\d)0(?=\.)", "", " ".join(f"{number / 10:g}" for number in numbers)
+    ).replace(" -", "-")
 
 
 def in_steps(path):

@@ -279,8 +279,7 @@ def bring_notebooks(target):
 def write(site):
     """Write the notebook interface into ``site``, a folder with the built pages."""
     settings = yaml.load(Path("_config.yml").read_text("utf8"), YAML)
-    names = write_lock(site)
-    write_workshop(site, settings, names)
+    write_workshop(site, settings, write_lock(site))
     target = site / FOLDER
     made_from = [
         fingerprint(

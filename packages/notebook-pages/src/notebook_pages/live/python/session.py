@@ -307,6 +307,11 @@ class Shell:
         (with a ``traceback``), 'interrupted', or 'missing' (with the ``package`` that is missing,
         and the reason).
         """
+        if code.startswith(">>>"):
+            # Of a session of Python, copied from a docstring, keep only what was typed.
+            code = "\n".join(
+                line[4:] for line in code.splitlines() if line.startswith((">>>", "..."))
+            )
         linecache.cache[name] = (len(code), None, code.splitlines(keepends=True), name)
         plain_numpy.begin()
         info = types.SimpleNamespace(raw_cell=code, cell_id=name)
