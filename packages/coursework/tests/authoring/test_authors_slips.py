@@ -231,6 +231,10 @@ def test_a_slip_is_refused_and_explained(tmp_path, slip, said):
             "Its options 'left' and 'Left' count as the same answer",
         ),
         (
+            {"question": changed("'x')", "'x', solution='So $\\theta$ is $\\frac{1}{2}$.')")},
+            "Python reads a backslash in 'So $\\theta$ is $\\x0crac{1}{2}$.' as a special",
+        ),
+        (
             {
                 "check": "check('trial/o\u0308ne', answer)",
                 "question": changed("trial/one", "trial/o\u0308ne"),
@@ -251,10 +255,23 @@ def test_a_source_finds_the_files_beside_it(tmp_path):
     """As in Jupyter. Students do not get these files, so their own cells must not need them."""
     made = made_in(tmp_path)
     reads = "from slopes import slope\nanswer = slope(open('slopes.csv')) * x"
-    sources(made.sources, answer=changed("answer = 3 * x", reads, ANSWER))
+    source = sources(
+        made.sources,
+        answer=changed("answer = 3 * x", reads, ANSWER),
+        before=[("markdown", "A note of the author's")],
+        text="![A beam](beam.png) Give it as `answer`. ![A beam](attachment:a.png)",
+    )
+    source.write_text(
+        source.read_text()
+        .replace('"cell_type": "markdown"', '"cell_type": "raw"', 1)
+        .replace('"markdown"', '"markdown", "attachments": {"a.png": {"image/png": "BBBB"}}')
+    )
+    (made.sources / "beam.png").write_bytes(bytes(3))
     (made.sources / "slopes.py").write_text("def slope(lines):\n    return int(*lines)\n")
     (made.sources / "slopes.csv").write_text("3\n")
     assert release(made) == ["trial"]
+    kept = (made.exercises / "trial.ipynb").read_text()
+    assert "png;base64,AAAA" in kept and "png;base64,BBBB" in kept and '"raw"' in kept
     sources(made.sources, before=[("code", "text = open('slopes.csv').read()")])
     with pytest.raises(AuthorError, match="do not get the files beside your notebook"):
         release(made)

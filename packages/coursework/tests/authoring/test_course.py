@@ -60,9 +60,7 @@ def test_a_new_course_is_whole(statics):
         }
         # A student who starts the kernel anew and runs only a check sees this from Python.
         assert b"name 'check' is not defined" in box.read("exercises/README.txt")
-
-
-def test_nothing_is_written_over_by_a_new_course(statics):
+    # Another new course writes nothing over it.
     before = contents(statics)
     with pytest.raises(SystemExit, match="already exists"):
         main(["new", str(statics)])
@@ -294,12 +292,14 @@ def test_where_nothing_can_be_written_the_selftest_says_so_first(
     course = shutil.copytree(statics, tmp_path / "course", ignore=shutil.ignore_patterns("build"))
     (course / "build").write_text("in the way")
     monkeypatch.chdir(course)
-    for command in (["selftest"], ["try", "first-steps"]):
-        with pytest.raises(SystemExit, match=f"^coursework {command[0]}: We cannot write the page"):
+    for command, said in (
+        (["selftest"], "We cannot write the page"),
+        (["try", "first-steps"], "We cannot write the page"),
+        (["new", "build/inside"], "Not a directory: .*build"),
+        (["wheels", "build/inside"], "Not a directory: .*build"),
+    ):
+        with pytest.raises(SystemExit, match=f"^coursework {command[0]}: {said}"):
             main(command)
-    for command in ("new", "wheels"):
-        with pytest.raises(SystemExit, match=f"^coursework {command}: Not a directory: .*build"):
-            main([command, "build/inside"])
     main(["selftest", "--page", str(tmp_path / "page.html")])
     assert (
         "Every question passed." in capsys.readouterr().out and (tmp_path / "page.html").is_file()

@@ -153,7 +153,7 @@ class AuthoredQuestion:
     entries : dict
         `Entry` by fingerprint: the right answer and every mistake that differs from it.
     slips : list of str
-        The author's slips in the name, the mistakes and the options. We release no such question.
+        The author's slips in names, texts, mistakes and options. We release no such question.
     near : list
         Fingerprints of answers that agree with an exact one to about three digits.
     """
@@ -209,11 +209,20 @@ class AuthoredQuestion:
             *self._catalogued(),
         ]
         self._demand_notes()
+        steps = itertools.chain(*self.hints.values(), *self.after.values(), self.ladder)
         self.near: list[str] = []
         self.slips = [
-            f"Its options {first!r} and {second!r} count as the same answer."
-            for first, second in itertools.combinations(public.options, 2)
-            if first.lower() == second.lower()
+            *(
+                f"Its options {first!r} and {second!r} count as the same answer."
+                for first, second in itertools.combinations(public.options, 2)
+                if first.lower() == second.lower()
+            ),
+            *(
+                f"Python reads a backslash in {text!r} as a special character. Put an r in front "
+                "of the quotation mark, or double each backslash."
+                for text in (*(authored or {}), *steps, *self.rubric, solution)
+                if re.search(r"[\a\b\f\r\t\v]", text)
+            ),
         ]
         if not unicodedata.is_normalized("NFC", name):
             self.slips.append(

@@ -226,10 +226,7 @@ def _digits(public: Question) -> int | None:
     tolerance = public.tolerance
     if tolerance is None:
         return None
-    digits = 0
-    while 0.5 * 10**-digits > tolerance:
-        digits += 1
-    return digits
+    return next(digits for digits in itertools.count() if 0.5 * 10**-digits <= tolerance)
 
 
 def another_answer(public: Question, answer: Answer, chance: random.Random | None = None) -> Answer:

@@ -130,8 +130,8 @@ def exercise_notebook(source: Source, roster: bool = False) -> NotebookNode:
                     image(source.figures[number].picture(), source.figures[number].alt)
                 )
             )
-        elif cell.cell_type == "markdown":
-            cells.append(nbformat.v4.new_markdown_cell(cell.source))
+        elif cell.cell_type != "code":
+            cells.append(cell)
         else:
             blanks = answered_in(cell.source, owners)
             text = posed(cell.source, owners)
@@ -143,12 +143,12 @@ def exercise_notebook(source: Source, roster: bool = False) -> NotebookNode:
             ]
             if blanks:
                 code.metadata["nbgrader"] = _nbgrader(
-                    code, _identifier(owners[blanks[0]]), solution=True
+                    code, owners[blanks[0]].replace("/", "-"), solution=True
                 )
             elif graded:
                 code.metadata["nbgrader"] = _nbgrader(
                     code,
-                    f"check-{_identifier(graded[0].name)}",
+                    f"check-{graded[0].name.replace('/', '-')}",
                     points=sum(question.worth for question in graded),
                 )
             cells.append(code)
@@ -156,10 +156,6 @@ def exercise_notebook(source: Source, roster: bool = False) -> NotebookNode:
         cell["id"] = f"cell-{number}"
     made: NotebookNode = nbformat.v4.new_notebook(cells=cells, metadata=METADATA)
     return made
-
-
-def _identifier(name: str) -> str:
-    return name.replace("/", "-")
 
 
 def _nbgrader(
@@ -191,10 +187,7 @@ def _checksum(cell: NotebookNode, about: Mapping[str, Any]) -> str:
     ]
     if about["grade"]:
         parts.append(str(float(about["points"])))
-    digest = hashlib.md5()
-    for part in parts:
-        digest.update(part.encode("utf8"))
-    return digest.hexdigest()
+    return hashlib.md5("".join(parts).encode("utf8")).hexdigest()
 
 
 def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:

@@ -6,17 +6,21 @@
 from __future__ import annotations
 
 import ast
+import base64
 import contextlib
 import functools
 import hashlib
+import html
 import io
 import itertools
 import json
+import mimetypes
 import multiprocessing
 import os
 import re
 import sys
 import textwrap
+import urllib.parse
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sized
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
@@ -46,6 +50,8 @@ ROOMS = ("authoring", "checking")
 MOST_PLACES = 10
 #: Rounded values of pi, which are right to some digits only, so an answer would be, too.
 PI_ROUNDED = re.compile(r"(?<![\w.])3\.14(?:1(?:5(?:9\d{0,9})?|6)?)?(?![\w.])")
+#: A picture in Markdown, whose file is beside the notebook or attached to the cell.
+PICTURE = re.compile(r"!\[(?P<alt>[^\]]*)\]\((?!https?:|data:)(?P<name>[^)\s]+)[^)]*\)")
 #: The most characters of a parameter that counts as a word; a longer one is part of the text.
 LONGEST_WORD = 40
 SOLUTION = re.compile(
@@ -114,8 +120,10 @@ def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
         )
     unknown = sorted(set(only) - {path.stem for path in found})
     if unknown:
-        known = ", ".join(path.stem for path in found)
-        raise author.AuthorError(f"{folder} has no {unknown[0]}.ipynb; choose from {known}.")
+        raise author.AuthorError(
+            f"{folder} has no {unknown[0]}.ipynb; choose from "
+            f"{', '.join(path.stem for path in found)}."
+        )
     return [path for path in found if not only or path.stem in only]
 
 
@@ -237,6 +245,8 @@ def read_source(
         cell.source = cell.source.replace("\r\n", "\n")
         if cell.cell_type == "code":
             _demand_marks(cell.source, f"{path.name}, cell {number}")
+        elif cell.cell_type == "markdown":
+            cell.source = _with_pictures(cell, path.parent)
     recorder = _Recorder(path, notebook, variant, edition, only, pictures)
     figures = _figures_of_run(path, notebook, recorder)
     variables = checked_names(notebook)
@@ -250,6 +260,24 @@ def read_source(
     return Source(
         path.stem, notebook, recorder.questions, figures, recorder.rules, bool(recorder.identities)
     )
+
+
+def _with_pictures(cell: NotebookNode, folder: Path) -> str:
+    """Return a cell's text with all pictures in it: those beside the notebook, and pasted ones.
+
+    Students get no other files, and pages do not show what is pasted.
+    """
+    pasted = cell.pop("attachments", {})
+
+    def in_text(found: re.Match[str]) -> str:
+        name = found["name"]
+        kind = mimetypes.guess_type(name)[0]
+        data = pasted.get(name.removeprefix("attachment:"), {}).get(kind) or base64.b64encode(
+            (folder / urllib.parse.unquote(name)).read_bytes()
+        ).decode("ascii")
+        return f'<img alt="{html.escape(found["alt"])}" src="data:{kind};base64,{data}">'
+
+    return PICTURE.sub(in_text, cell.source)
 
 
 class _Recorder:
@@ -392,9 +420,8 @@ def _figures_of_run(path: Path, notebook: NotebookNode, recorder: _Recorder) -> 
 
 def _demand_matched(path: Path, recorder: _Recorder, variables: Mapping[str, str]) -> None:
     """Reject checks without a question, and answers of the same name."""
-    everything = not recorder.variant and recorder.only is None
-    unasked = sorted(set(recorder.answers) - set(recorder.questions)) if everything else []
-    if unasked:
+    unasked = sorted(set(recorder.answers) - set(recorder.questions))
+    if unasked and not recorder.variant and recorder.only is None:
         raise author.AuthorError(
             f"{path.name}: these checks have no question: {', '.join(unasked)}."
         )

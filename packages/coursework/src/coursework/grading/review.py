@@ -328,9 +328,10 @@ class Class:
         """
         cell = record.answer(cluster.question).cell
         kept = [
-            (notebook.sha256, self.store.work(notebook.sha256)) for notebook in record.notebooks
+            (notebook.sha256, cells)
+            for notebook in record.notebooks
+            if (cells := self.store.work(notebook.sha256))
         ]
-        kept = [(digest, cells) for digest, cells in kept if cells]
         kept.sort(key=lambda one: not any(cluster.question in source for source in one[1]))
         for digest, cells in kept:
             near: list[int] = []

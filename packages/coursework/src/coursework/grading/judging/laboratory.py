@@ -153,8 +153,6 @@ class Move(NamedTuple):
     @property
     def gain(self) -> float:
         """The share of the points that the student gains; negative for a loss."""
-        if self.worth == self.worth_before:
-            return self.after - self.before
         before, after = (
             points / worth if worth else 0.0
             for points, worth in ((self.before, self.worth_before), (self.after, self.worth))
@@ -239,10 +237,11 @@ class Laboratory:
 
     def lines(self) -> list[str]:
         """Return what a person should know before agreeing."""
-        said = []
-        for what, moves in (("gain", self.gain), ("lose", self.lose)):
-            if moves:
-                said.append(f"{_students(moves)} would {what}: {_about(moves)}.")
+        said = [
+            f"{_students(moves)} would {what}: {_about(moves)}."
+            for what, moves in (("gain", self.gain), ("lose", self.lose))
+            if moves
+        ]
         if self.again:
             said.append(
                 f"{_students(self.again)} would become undecided, because the stored answers are "
