@@ -129,6 +129,8 @@ def test_what_is_missing_counts_once_it_is_due(rules):
     assert result(rules(), half, now=datetime.datetime(2026, 10, 25, 1, 0, tzinfo=UTC))[1] == 0.5
     found, total = result(rules(), half)
     assert found["axes"].state == "missing" and total == pytest.approx(0.5 * 3 / 4)
+    # Exercises that are worth nothing do not count, although they were graded.
+    assert result(rules(), half, record(0, 0, assignment="axes"))[1] == 0.5
     # An assignment that was never graded counts for nobody.
     assert result(rules(), half, worth={"turns": 6})[0]["axes"].state == "not due"
 

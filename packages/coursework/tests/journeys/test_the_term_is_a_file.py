@@ -352,7 +352,7 @@ def test_who_has_no_mark_is_told_why(course):
     write_term(course, "[extensions.dan]", "hw1 = 'excused'")
     course.grade()
     said = course.run("why", "ben", "hw1")
-    assert "ben, hw1: we graded none of the files." in said
+    assert "ben, hw1: nothing has been graded." in said
     assert (
         "not graded: submitted/ben/hw1/hw1.ipynb: Not a notebook" in said
         and "no mark is exported" in said

@@ -218,7 +218,8 @@ class Gradebook:
     def __init__(self, path: Path, names: Mapping[str, str] | None = None) -> None:
         data = path.read_bytes()
         self.encoding, self.mark = encoding_of(path, data)
-        text = data[len(self.mark) :].decode(self.encoding)
+        # Every byte returns, even one that the encoding lacks.
+        text = data[len(self.mark) :].decode(self.encoding, "surrogateescape")
         self.delimiter = max(",;\t", key=text.split("\n", 1)[0].count)
         self.lines = _split(text, self.delimiter)
         if len(self.lines) < 2:
@@ -255,7 +256,7 @@ class Gradebook:
             self.delimiter.join(field.written for field in fields) + end
             for fields, end in self.lines
         )
-        return self.mark + text.encode(self.encoding)
+        return self.mark + text.encode(self.encoding, "surrogateescape")
 
 
 def _split(text: str, delimiter: str) -> list[tuple[list[Field], str]]:

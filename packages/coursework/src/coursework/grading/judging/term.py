@@ -868,12 +868,10 @@ def _handed_in(
 
 
 def _mean(results: Iterable[Result], term: Term) -> float | None:
-    weight = sum(term.assignments[one.assignment].weight for one in results)
-    return (
-        sum(term.assignments[one.assignment].weight * one.share for one in results) / weight
-        if weight
-        else None
-    )
+    # Exercises for practice, which are worth nothing, count for nothing.
+    parts = [(term.assignments[one.assignment].weight, one.share) for one in results if one.worth]
+    total = sum(weight for weight, _ in parts)
+    return sum(weight * share for weight, share in parts) / total if total else None
 
 
 def _dropped(results: Iterable[Result], term: Term) -> set[str]:

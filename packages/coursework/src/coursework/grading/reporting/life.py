@@ -43,9 +43,8 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
             f"{f' Did you mean {near[0]!r}?' if near and not given else ''}"
             f"{'' if all_given else ' If your marks are elsewhere, add --marks and their folder.'}"
         )
-    comes_to = _of(given) if given else "we graded none of the files"
-    of_group = f" (in {whose})" if whose != student else ""
-    lines = [f"{student}{of_group}, {assignment}: {comes_to}."]
+    comes_to = _of(given) if given else "nothing has been graded"
+    lines = [f"{student}{f' (in {whose})' if whose != student else ''}, {assignment}: {comes_to}."]
     lines += [f"  not graded: {in_a_line(file.file, 120)}: {file.why}" for file in refused]
     cases = record.cases if record else {}
     for notebook in record.notebooks if record else ():

@@ -230,7 +230,7 @@ def cells_in(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """Return a table's column names in lower case, and the number and cells of each line."""
     data = path.read_bytes()
     encoding, mark = encoding_of(path, data)
-    text = data[len(mark) :].decode(encoding)
+    text = data[len(mark) :].decode(encoding, "replace")
     # Split lines only where CSV does. Students choose their names, and with a rarer line separator
     # in them they could begin a line of their own.
     reader = csv.reader(
@@ -283,8 +283,8 @@ def encoding_of(path: Path, data: bytes) -> tuple[str, bytes]:
         data.decode("utf-8")
         return "utf-8", b""
     except UnicodeDecodeError:
-        # Latin-1 preserves every byte.
-        return "latin-1", b""
+        # This is what spreadsheets on Windows write. It lacks a few bytes.
+        return "cp1252", b""
 
 
 def _called(line: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
