@@ -15,6 +15,7 @@ import orientation_course
 from coursework import check
 from coursework.authoring.source import names_asked, read_source
 from coursework.checking.kinds import KINDS
+from notebook_pages.notebooks import all_notebooks
 from tools import chapters, new
 
 
@@ -33,6 +34,22 @@ def test_every_chapter_has_its_parts(monkeypatch):
     monkeypatch.chdir(REPOSITORY)
     faults = list(chapters.faults())
     assert not faults, "\n" + "\n".join(faults)
+
+
+def test_code_that_readers_see_is_not_wider_than_the_page():
+    # A page that is 1300 pixels wide or wider has room for 83 characters. What is longer wraps
+    # without indentation.
+    too_long = [
+        f"{path.relative_to(REPOSITORY)}:{number} (cell {position}): {len(line)} characters, "
+        f"of which 82 fit on the page: {line.strip()}"
+        for path in all_notebooks(REPOSITORY)
+        for position, cell in enumerate(nbformat.read(path, as_version=4).cells, 1)
+        if cell.cell_type == "code"
+        and not {"hide-input", "remove-input", "remove-cell"} & {*cell.metadata.get("tags", [])}
+        for number, line in enumerate(cell.source.splitlines(), 1)
+        if len(line) > 82
+    ]
+    assert not too_long, "\n" + "\n".join(too_long)
 
 
 FORGOTTEN = {
@@ -100,9 +117,8 @@ FORGOTTEN = {
 
 
 @pytest.mark.sampled(3)
-@pytest.mark.parametrize("part", FORGOTTEN)
-def test_what_is_forgotten_is_told_by_its_place(book, part):
-    path, old, replacement, says = FORGOTTEN[part]
+@pytest.mark.parametrize("path, old, replacement, says", FORGOTTEN.values(), ids=FORGOTTEN)
+def test_what_is_forgotten_is_told_by_its_place(book, path, old, replacement, says):
     text = (book / path).read_text("utf8")
     assert old in text
     (book / path).write_text(text.replace(old, replacement), "utf8")
@@ -121,9 +137,11 @@ def test_a_notebook_of_exercises_that_is_not_there(book):
 
 
 def make(*arguments):
-    command = [sys.executable, "-m", "tools.new", *arguments]
     return subprocess.run(
-        command, env=os.environ | {"PYTHONPATH": str(REPOSITORY)}, capture_output=True, text=True
+        [sys.executable, "-m", "tools.new", *arguments],
+        env=os.environ | {"PYTHONPATH": str(REPOSITORY)},
+        capture_output=True,
+        text=True,
     )
 
 
@@ -141,10 +159,12 @@ def test_a_new_chapter_has_all_its_parts(book):
         r"(?:(?!## ).*\n)*### 3. TO BE WRITTEN",
         (book / "tests/solutions/spoken-questions.md").read_text("utf8"),
     )
-    pages = re.findall(r"file: (\S+)", (book / "_toc.yml").read_text("utf8"))
+    contents = (book / "_toc.yml").read_text("utf8")
     for folder in ("chapters", "exercises"):
-        place = pages.index(f"{folder}/chapter-of-the-tests")
-        assert pages[place - 1] == f"{folder}/quaternions-in-full"
+        assert re.search(
+            rf"file: {folder}/quaternions-in-full\n *- file: {folder}/chapter-of-the-tests\n",
+            contents,
+        )
     for cell in nbformat.read("chapters/chapter-of-the-tests.ipynb", as_version=4).cells:
         if "check(" not in cell.source and cell.cell_type == "code":
             exec(cell.source, {})
@@ -192,10 +212,12 @@ def test_what_cannot_be_made_is_told_and_nothing_changed(
 def test_a_new_question_of_every_kind_is_one_that_can_be_released(book):
     assert set(new.EXAMPLES) == {*KINDS, *orientation_course.KINDS}
     path = book / "tests" / "solutions" / "trial.ipynb"
-    notebook = nbformat.v4.new_notebook(
-        cells=[new.code("import sympy as sm\n\nfrom coursework import check")]
+    nbformat.write(
+        nbformat.v4.new_notebook(
+            cells=[new.code("import sympy as sm\n\nfrom coursework import check")]
+        ),
+        path,
     )
-    nbformat.write(notebook, path)
     for number, kind in enumerate([*new.EXAMPLES] * 2):
         new.new_question(f"trial/{kind.replace(' ', '-').lower()}-{number}", "", kind)
     assert len(read_source(path).questions) == 2 * len(new.EXAMPLES)
