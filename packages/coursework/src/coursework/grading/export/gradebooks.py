@@ -774,7 +774,6 @@ def write_nbgrader(path: str | Path, marks: Marks) -> str:
 
 def write_gradescope(path: str | Path, marks: Marks, student: str) -> None:
     """Write a Gradescope autograder's results for one student."""
-    given = [mark for record in marks.students[student] for mark in record.marks.values()]
     # Give no status if a person has still to decide.
     status = {"undecided": {}, "correct": {"status": "passed"}, "decided": {"status": "passed"}}
     tests = [
@@ -788,7 +787,9 @@ def write_gradescope(path: str | Path, marks: Marks, student: str) -> None:
             "output_format": "text",
             "output": readable("\n".join([mark.outcome, *map(plain_text, mark.messages)])),
         }
-        for order, mark in enumerate(given, 1)
+        for order, mark in enumerate(
+            (mark for record in marks.students[student] for mark in record.marks.values()), start=1
+        )
     ]
     results = {"score": marks.points(student), "output_format": "text", "tests": tests}
     write(path, json.dumps(results, indent=1, ensure_ascii=False) + "\n")

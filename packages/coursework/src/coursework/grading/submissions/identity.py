@@ -355,10 +355,11 @@ class Layout:
             )
         stem = PurePosixPath(parts[0]).stem
         for assignment in self.assignments:
-            rest = stem.replace(assignment, "").strip(" _-.()")
-            if assignment in stem and rest:
+            named = re.compile(re.escape(assignment), re.I)
+            rest = named.sub("", stem).strip(" _-.()")
+            if named.search(stem) and rest:
                 # The same name written differently is a separate claim.
-                source = f"files {stem.replace(assignment, '*')}"
+                source = f"files {named.sub('*', stem)}"
                 return Claim(_clean(rest), _own(rest), source, parts[0], reply=f"{stem}-")
         return Claim(_clean(stem), _own(stem), f"file {stem}", parts[0], reply=f"{stem}-")
 
@@ -431,7 +432,8 @@ def _submitters(data: bytes) -> dict[str, tuple[list[tuple[str, list[str]]], str
 
 
 def _own(name: str) -> tuple[tuple[str, str], ...]:
-    return ("own", name), ("name", name)
+    # The last name may come first, and signs may separate the parts.
+    return ("own", name), ("name", name), ("letters", name)
 
 
 def _shared(names: set[str], end: str) -> str:
