@@ -360,8 +360,10 @@ def test_a_course_comes_to_a_page_for_each_student_and_a_table(out, rules):
     # Marks stay in the table when a student leaves the roster, and a message says so.
     (out.parent / "later.csv").write_text("student\nann\nbob\ndora\n")
     said = write_course(Store(out), rules(roster=out.parent / "later.csv"), now=now)
-    assert "carl has marks but is not in the roster." in said[0] and (
-        (out / "course" / "course.csv").read_text().splitlines() == rows
+    assert (
+        "carl has marks but is not in the roster." in said[0]
+        and "records/carl to" in said[0]
+        and ((out / "course" / "course.csv").read_text().splitlines() == rows)
     )
 
 

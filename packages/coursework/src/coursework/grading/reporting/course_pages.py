@@ -65,7 +65,8 @@ def write_course(store: Store, term: Term, *, now: datetime.datetime | None = No
     people = term.roster.people if term.roster else students
     lines = _misspelt(term, worth) + [
         f"{student} has marks but is not in the roster. The table and the statistics still "
-        "include this student."
+        "include this student. For somebody who has left the course, move "
+        f"{store.records / file_name(student)} to {store.folder}/put-aside/{file_name(student)}."
         for student in sorted(students.difference(people))
     ]
     students.update(people)
