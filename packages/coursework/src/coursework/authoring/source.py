@@ -191,19 +191,15 @@ def cells_of(path: str | Path) -> list[dict[str, Any]]:
 
 
 def files_of(path: Path) -> dict[str, bytes]:
-    """Return a source and the files beside it that its cells may read, by their names there.
-
-    Hidden files and an author's notes in Markdown are not among them.
-    """
-    beside = [
-        place
-        for place in sorted(path.parent.rglob("*"))
-        if place.is_file()
-        and place.suffix not in (".ipynb", ".md", ".pyc")
-        and not any(part.startswith(".") for part in place.relative_to(path.parent).parts)
-    ]
+    """Return a source and the files below its folder that its cells name or may import, by name."""
+    # In the JSON of a notebook, a backslash may precede a quotation mark.
+    strings = re.findall(r"['\"]([^'\"\\\n]{1,200})\\?(?=['\"])", path.read_text("utf8"))
     return {
-        place.relative_to(path.parent).as_posix(): place.read_bytes() for place in [path, *beside]
+        name: place.read_bytes()
+        for name in dict.fromkeys(
+            [path.name, *sorted([*strings, *(module.name for module in path.parent.glob("*.py"))])]
+        )
+        if not name.startswith(("/", "../")) and (place := path.parent / name).is_file()
     }
 
 
