@@ -77,7 +77,7 @@ def test_what_becomes_of_each_file(work, tmp_path):
     install = f"Now run this:\n\n    {sys.executable} -m pip install {work / NEW_WHEEL}\n"
     assert update(archive, work) == [
         "replaced    README.txt, which you had not changed",
-        "kept yours  kept.txt, since its exercise has not changed",
+        "kept yours  kept.txt, since the archive has no newer one",
         f"replaced    {OLD_WHEEL}",
         "kept yours  mine.ipynb, and put the new version in mine-new-1.ipynb",
         "added       new.ipynb",

@@ -55,8 +55,8 @@ ADVICE = {
     ),
     r"(?sm)^'(str|bool|NoneType|Reply|Given)' object is not callable.*"
     r"\b(check|hint|student|variant)\(": (
-        "A cell has set the name of this function to a value. Use a different name there, run the "
-        "cell that imports the function, and then run this cell again.\n"
+        "A cell has set the name of this function to a value. Run the cell that imports the "
+        "function again, and then this one. Use a different name for a value of your own.\n"
     ),
     # The error of an assertion has no words of its own.
     r"(?s)\A\n.*\bassert\s+check\(": (

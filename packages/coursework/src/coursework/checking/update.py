@@ -138,7 +138,7 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
             place.write_text(_with_new_packages(place.read_text("utf8"), older), "utf8")
             report.append(f"changed     {name}")
         elif before.get(name) == now[name]:
-            report.append(f"kept yours  {name}, since its exercise has not changed")
+            report.append(f"kept yours  {name}, since the archive has no newer one")
         else:
             beside = _put_beside(place, data, before)
             now[beside] = now[name]

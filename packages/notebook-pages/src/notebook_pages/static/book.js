@@ -183,8 +183,8 @@ addEventListener("beforeprint", () => {
   });
 }
 
-// Load the search when its field is focused, and the lecture when it starts. No single key does either, as dictation,
-// or typing outside a text field, would trigger it. The theme opens the search by Ctrl+K.
+// Load the search when its field gets the focus or, in a window without focus, a text, and the lecture when it starts. No
+// single key does either, as dictation, or typing outside a text field, would do so. Ctrl+K is the theme's.
 {
   const load = (name, onload) => {
     const link = document.querySelector(`link[rel='${name}-script']`);
@@ -193,7 +193,7 @@ addEventListener("beforeprint", () => {
     link?.remove(); // once
   };
   const lecture = document.querySelector("button.lecture-mode");
-  document.addEventListener("focusin", ({ target }) => target.closest("form.bd-search") && load("search"));
+  for (const act of ["focusin", "input"]) document.addEventListener(act, ({ target }) => target.closest("form.bd-search") && load("search"));
   lecture?.addEventListener("click", () => load("lecture", () => lecture.click()));
   if (document.querySelector("form.bd-search:not(dialog form)")) load("search");
 }
