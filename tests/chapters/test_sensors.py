@@ -161,13 +161,13 @@ def test_a_reset_keeps_a_filter_honest_and_the_whole_rotation_longest():
 
 def test_a_gate_keeps_the_heading_past_a_car_in_every_draw():
     rows = {
-        line[:27].strip(): np.reshape(numbers(line[27:]), (5, 2))
+        line[:23].strip(): np.reshape(numbers(line[23:]), (5, 2))
         for line in output_of(r"def follow\(", FILTERS)[1].splitlines()[1:]
     }
     middle, worst = rows["no gate"].T
     assert middle.min() > 10 and worst.min() > 35
     assert rows["gate 9.2"][:, 1].max() < 8 and rows["gate 9.2"][:, 0].max() < 1.5
-    assert rows["no gate, true bias error"][:, 0].max() < 5
+    assert rows["no gate, sure of bias"][:, 0].max() < 5
     assert np.abs(rows["no car, no gate"] - rows["no car, gate 9.2"])[:, 0].max() < 0.3
     seconds = numbers(output_of("longest, ended", FILTERS)[1].splitlines()[-1])
     assert 0.5 < seconds[0] < 2 and seconds[1] > 97
