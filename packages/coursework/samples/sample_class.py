@@ -116,7 +116,10 @@ def written(question: AuthoredQuestion, answers: Iterable[Any]) -> list[Written]
 def asked_of(question: AuthoredQuestion) -> Asked:
     """Return a variant of a question, with right answers and, first, the most frequent mistakes."""
     forms = [answer for _, answer in equivalent_forms(question.public, question.answer)]
-    mistakes = {(one.note, str(one.details)): one.answer for one in reversed(question.mistakes)}
+    mistakes = {
+        (mistake.note, str(mistake.details)): mistake.answer
+        for mistake in reversed(question.mistakes)
+    }
     # The same mistakes are frequent in a class, even where its members' numbers differ.
     wrong = list(mistakes.values())
     random.Random(question.name).shuffle(wrong)
@@ -136,14 +139,16 @@ def exercise(path: Path, edition: str) -> tuple[list[NotebookNode], dict[str, li
     owners = {variable: name for name, variable in checked_names(source.notebook).items()}
     drawn = filter(None, (drawn_in(cell.source) for cell in source.notebook.cells))
     variables = {name: variable for variable, name in drawn}
-    for region in (one for cell in source.notebook.cells for one in SOLUTION.findall(cell.source)):
+    for region in (
+        solution for cell in source.notebook.cells for solution in SOLUTION.findall(cell.source)
+    ):
         for name in [owners[variable] for variable in bound(region, owners)]:
             # A function is answered as its author does, unless that uses what students do not get.
             used = set(re.findall(rf"\b{variables.get(name)}\.(\w+)", region))
-            for one in asked[name]:
-                if not one.right and used <= set(one.question.public.given):
+            for variant in asked[name]:
+                if not variant.right and used <= set(variant.question.public.given):
                     empty = blank(region, owners).rstrip()
-                    one.right.append(Written(empty, region.rstrip(), ("correct", "")))
+                    variant.right.append(Written(empty, region.rstrip(), ("correct", "")))
     return exercise_notebook(source, roster=True).cells, asked
 
 

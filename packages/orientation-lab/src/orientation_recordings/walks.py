@@ -105,7 +105,7 @@ def walks(
         field = FIELD + steel * np.outer(by_the_car, [np.cos(side), np.sin(side), 0])
         dcms = dcms_after_turns(pose, (rates[1:] + rates[:-1]) / 2 * STEP)
         bias = random.normal(scale=BIAS, size=3)
-        exact = rates + bias, *(np.einsum("nij,nj->ni", dcms, one) for one in (force, field))
+        exact = rates + bias, *(np.einsum("nij,nj->ni", dcms, vector) for vector in (force, field))
         noisy = (
             values + random.normal(scale=scale, size=rates.shape)
             for values, scale in zip(exact, NOISE)

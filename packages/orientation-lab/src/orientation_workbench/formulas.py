@@ -118,7 +118,7 @@ def _pick(scores, rows):
     ]
     chosen = last[1]
     for best, row in reversed(others):
-        chosen = [_where(best, one, other) for one, other in zip(row, chosen)]
+        chosen = [_where(best, entry, other) for entry, other in zip(row, chosen)]
     return chosen
 
 

@@ -327,7 +327,7 @@ class AuthoredQuestion:
                     raise AuthorError(
                         f"{self.name}: `{argument}` names {key!r}, but this question has no "
                         "such mistake. Its mistakes are "
-                        f"{', '.join(repr(one) for one in known)}."
+                        f"{', '.join(repr(mistake) for mistake in known)}."
                     )
 
     def _catalogued(self) -> list[Mistake]:
@@ -354,19 +354,19 @@ class AuthoredQuestion:
         known = self._known()
         right = known[0]
         by_text: dict[str, list[_Known]] = {}
-        for one in known:
+        for answer in known:
             exact = self.public.tolerance is None
-            reach = REACH if one is not right else 1 if exact else NEARLY
+            reach = REACH if answer is not right else 1 if exact else NEARLY
             for text in fingerprints(
-                self.public, one.reading, reach, most=MOST_EDGES if one is right else 3
+                self.public, answer.reading, reach, most=MOST_EDGES if answer is right else 3
             ):
-                by_text.setdefault(text, []).append(one)
+                by_text.setdefault(text, []).append(answer)
         self.near = []
         if right.numbers and self.public.tolerance is None:
             self.near = fingerprints(self.public, right.reading, near=True)
         return {
             text: Entry(
-                [self._known_answer(one, alone=len(ones) == 1) for one in ones], ones[0].plain
+                [self._known_answer(answer, alone=len(ones) == 1) for answer in ones], ones[0].plain
             )
             for text, ones in by_text.items()
         }
@@ -376,21 +376,21 @@ class AuthoredQuestion:
         known = [self._one("correct", [], self.plain)]
         for mistake in self.mistakes:
             try:
-                one = self._one(
+                answer = self._one(
                     "mistake", [Note(mistake.note, mistake.details)], self.to_plain(mistake.answer)
                 )
             except (Fault, Undecidable, NotPlain):
                 # The form of such an answer is refused, with a message of its own.
                 continue
-            same = next((other for other in known if self._same(one, other)), None)
+            same = next((other for other in known if self._same(answer, other)), None)
             if same is None:
-                known.append(one)
+                known.append(answer)
             elif (
                 same is not known[0]
-                and one.notes[0] not in same.notes
+                and answer.notes[0] not in same.notes
                 and mistake.note not in GENERAL
             ):
-                same.notes.append(one.notes[0])
+                same.notes.append(answer.notes[0])
             elif same is known[0] and mistake.note == "authored":
                 self.slips.append(
                     f"This authored mistake gives the right answer: {mistake.details['text']}"
@@ -401,25 +401,25 @@ class AuthoredQuestion:
         reading = self.read(plain)
         return _Known(outcome, notes, plain, reading, canonical(self.public, reading))
 
-    def _same(self, one: _Known, other: _Known) -> bool:
-        if one.reading.text is not None or other.reading.text is not None:
-            return one.reading.text == other.reading.text
+    def _same(self, answer: _Known, other: _Known) -> bool:
+        if answer.reading.text is not None or other.reading.text is not None:
+            return answer.reading.text == other.reading.text
         # An answer within the tolerance of the right one counts as right.
         return within(
-            self.public, one.numbers, other.numbers, 1 if other.outcome == "correct" else 0.1
+            self.public, answer.numbers, other.numbers, 1 if other.outcome == "correct" else 0.1
         )
 
-    def _known_answer(self, one: _Known, alone: bool) -> KnownAnswer:
+    def _known_answer(self, answer: _Known, alone: bool) -> KnownAnswer:
         steps = [
             step
-            for note, details in one.notes
+            for note, details in answer.notes
             # An author's hints name a mistake by its words, or all of them by `authored`.
             for key in dict.fromkeys((str(details["text"]) if note == "authored" else note, note))
             for step in self.hints.get(key, [])
         ]
-        needed = self.public.tolerance is not None and (one.outcome == "correct" or not alone)
-        numbers = [MP.nstr(number, 17) for number in one.numbers] if needed else []
-        return KnownAnswer(one.outcome, tuple(one.notes), tuple(steps), tuple(numbers))
+        needed = self.public.tolerance is not None and (answer.outcome == "correct" or not alone)
+        numbers = [MP.nstr(number, 17) for number in answer.numbers] if needed else []
+        return KnownAnswer(answer.outcome, tuple(answer.notes), tuple(steps), tuple(numbers))
 
     def names_for_others(self) -> list[str]:
         """Return the names by which students with other variants can find this answer."""
@@ -652,10 +652,10 @@ def _demand_arguments(name: str, given: set[str]) -> None:
         for parameter in inspect.signature(function).parameters.values()
         if parameter.kind is parameter.KEYWORD_ONLY
     ]
-    for one in sorted(given - set(known)):
-        close = difflib.get_close_matches(one, known, 1)
+    for argument in sorted(given - set(known)):
+        close = difflib.get_close_matches(argument, known, 1)
         raise AuthorError(
-            f"{name}: `question` has no argument `{one}`."
+            f"{name}: `question` has no argument `{argument}`."
             + (f" Did you mean `{close[0]}`?" if close else "")
         )
 
@@ -728,7 +728,7 @@ def _demand_calls(name: str, calls: object) -> None:
     if (
         not isinstance(calls, (list, tuple))
         or not calls
-        or not all(isinstance(one, (list, tuple)) for one in calls)
+        or not all(isinstance(call, (list, tuple)) for call in calls)
     ):
         raise AuthorError(
             f"{name}: `calls` must be a list of calls, each a list of arguments; calls=[[1], [2]] "

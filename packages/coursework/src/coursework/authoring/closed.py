@@ -94,9 +94,9 @@ def _asked_in(path: Path, course: Course) -> dict[str, Asked]:
 
 def _alike(question: AuthoredQuestion) -> list[tuple[str, ...]]:
     replies = dict.fromkeys(
-        tuple(str(details["text"]) for note, details in one.notes if note == "authored")
+        tuple(str(details["text"]) for note, details in answer.notes if note == "authored")
         for entry in question.entries.values()
-        for one in entry.answers
+        for answer in entry.answers
     )
     return [texts for texts in replies if len(texts) > 1]
 
@@ -114,36 +114,39 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
     paths = notebooks_in(course.sources, only)
     with processes_for(paths) as pool:
         found = list(pool.map(_asked_in, paths, [course] * len(paths)))
-    asked = {name: one for some in found for name, one in some.items()}
-    exercises = {name: one for name, one in asked.items() if name.partition("/")[0] != CHAPTERS}
+    asked = {name: question for some in found for name, question in some.items()}
+    exercises = {
+        name: question for name, question in asked.items() if name.partition("/")[0] != CHAPTERS
+    }
     lines = [
-        f"{name}, {one.worth:g} points: it has only {one.possible} possible answers, so a script "
-        "can try them all. Ask for several parts in one answer or for a function, or set exam=True."
-        for name, one in asked.items()
-        if one.possible and one.worth > 1
+        f"{name}, {question.worth:g} points: it has only {question.possible} possible answers, so "
+        "a script can try them all. Ask for several parts in one answer or for a function, or set "
+        "exam=True."
+        for name, question in asked.items()
+        if question.possible and question.worth > 1
     ]
     lines += [
         f"{name}: these mistakes give the same answer, so students who make either get the first "
         f"reply. Write one reply for them, or choose other numbers: {' / '.join(texts)}"
-        for name, one in asked.items()
-        for texts in one.alike
+        for name, question in asked.items()
+        for texts in question.alike
     ]
-    closed = sum(one.worth for one in asked.values() if one.possible)
-    points = sum(one.worth for one in asked.values())
+    closed = sum(question.worth for question in asked.values() if question.possible)
+    points = sum(question.worth for question in asked.values())
     lines.append(
         f"{closed:g} of {points:g} points are for answers that a script can find within {MOST:,} "
         "tries. A script that tries formulas can find more."
     )
     if exercises:
-        fixed = {name: one for name, one in exercises.items() if one.variants == 1}
+        fixed = {name: question for name, question in exercises.items() if question.variants == 1}
         lines.append(
-            f"{sum(one.worth for one in fixed.values()):g} of "
-            f"{sum(one.worth for one in exercises.values()):g} points in exercise notebooks are "
-            "for questions with one answer for everybody."
+            f"{sum(question.worth for question in fixed.values()):g} of "
+            f"{sum(question.worth for question in exercises.values()):g} points in exercise "
+            "notebooks are for questions with one answer for everybody."
         )
         lines += [
-            f"  {name} ({one.worth:g}): "
-            + (one.fixed or "vary it, or give the reason with `fixed`.")
-            for name, one in fixed.items()
+            f"  {name} ({question.worth:g}): "
+            + (question.fixed or "vary it, or give the reason with `fixed`.")
+            for name, question in fixed.items()
         ]
     return lines

@@ -167,7 +167,7 @@ def answers(item: Item, place: int) -> list[Answer]:
             # A mistake such as a factor of two in one entry says nothing about the others.
             continue
         value = wrong.values[place]
-        same = next((one for one in known if item.same(place, one.value, value)), None)
+        same = next((answer for answer in known if item.same(place, answer.value, value)), None)
         if same is None:
             known.append(Answer(value, wrong.share, [wrong.reply]))
         elif same.share < 1:

@@ -152,8 +152,8 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
         "README.txt": README.format(title=course.title).encode("utf8"),
         # The manifest lists the digest of each file.
         "requirements.txt": "".join(
-            f"{one}\n"
-            for one in [*(f"./{name}" for name in packages), "jupyterlab", "latex2mathml"]
+            f"{requirement}\n"
+            for requirement in [*(f"./{name}" for name in packages), "jupyterlab", "latex2mathml"]
         ).encode(),
         **packages,
     }
@@ -274,7 +274,7 @@ def wheel(name: str, folder: str | Path) -> Path:
         name,
         version,
         summary,
-        [one.format(version=version) for one in needs],
+        [requirement.format(version=version) for requirement in needs],
         files,
         command,
     )
@@ -295,7 +295,7 @@ def write_wheel(
     files = {
         **files,
         f"{place}.dist-info/METADATA": (
-            about + "".join(f"Requires-Dist: {one}\n" for one in needs)
+            about + "".join(f"Requires-Dist: {requirement}\n" for requirement in needs)
         ).encode(),
         f"{place}.dist-info/WHEEL": WHEEL.encode(),
         f"{place}.dist-info/entry_points.txt": entry_points.encode(),

@@ -240,7 +240,7 @@ def sealed_file(
         for name, question in source.questions.items()
     }
     if first:
-        questions = {name: beside(one, first[name]) for name, one in questions.items()}
+        questions = {name: beside(sealed, first[name]) for name, sealed in questions.items()}
     return _as_text({"format": FORMAT, "questions": questions})
 
 
@@ -295,7 +295,7 @@ def _answer_of(question: AuthoredQuestion) -> str:
 def _demand_answers(answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
     """Reject variants with one answer, since a classmate's would be right for everybody."""
     for question in answers[0]:
-        found = [one[question].answer for one in answers if question in one]
+        found = [variant[question].answer for variant in answers if question in variant]
         if len(found) > 1 and len(set(found)) == 1:
             raise AuthorError(
                 f"{question}: all of its {len(found)} variants have the same answer, "
@@ -307,11 +307,11 @@ def _demand_answers(answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
 def _demand_later(course: Course, after: Mapping[str, Iterable[str]]) -> None:
     """Reject hints for a later question that no notebook asks."""
     for question, later in after.items():
-        for one in later:
-            file = course.sources / f"{one.partition('/')[0]}.ipynb"
-            if not file.is_file() or one not in names_asked(file):
+        for name in later:
+            file = course.sources / f"{name.partition('/')[0]}.ipynb"
+            if not file.is_file() or name not in names_asked(file):
                 raise AuthorError(
-                    f"{question}: `after` names '{one}', but no notebook asks that question."
+                    f"{question}: `after` names '{name}', but no notebook asks that question."
                 )
 
 
@@ -346,7 +346,10 @@ def _release_variant(
             outdated.unlink()
         kept.write_text(sealed_file(source, json.loads(first)["questions"], pages), "utf8")
         answers.write_text(
-            json.dumps({name: _about_answer(one) for name, one in source.questions.items()}), "utf8"
+            json.dumps(
+                {name: _about_answer(question) for name, question in source.questions.items()}
+            ),
+            "utf8",
         )
     target = course.sealed / "variants" / f"{path.stem}-{number}.json"
     target.parent.mkdir(exist_ok=True)
@@ -377,21 +380,23 @@ def _even_out(name: str, code: str, course: Course) -> None:
     contents = [json.loads(file.read_text("utf8")) for file in files]
     for question in contents[0]["questions"]:
         ones = [content["questions"].get(question, {}) for content in contents]
-        ones = [one for one in ones if one.get("lockers")]
+        ones = [variant for variant in ones if variant.get("lockers")]
         if not ones:
             # This is an exam's question, or a text that a person reads.
             continue
-        counts = sorted(sealing.count_of(one["lockers"]) for one in ones)
+        counts = sorted(sealing.count_of(variant["lockers"]) for variant in ones)
         # Filling up to the maximum would make every variant's file as large as the largest.
         most = counts[-2] if len(counts) > 2 else -(-counts[-1] // TOGETHER) * TOGETHER
-        for one in ones:
-            one["lockers"] = sealing.filled_up(one["lockers"], most, f"{code} {one['salt']}")
+        for variant in ones:
+            variant["lockers"] = sealing.filled_up(
+                variant["lockers"], most, f"{code} {variant['salt']}"
+            )
         # Do the same with the pages that each variant has in addition to those of the first.
-        own = [one for one in ones[1:] if contents[0]["questions"][question].get("pages")]
-        most = max((len(one.get("pages") or ()) for one in own), default=0)
-        for one in own if most else ():
-            one["pages"] = sealing.pages_filled_up(
-                one.get("pages") or [], most, f"{code} {one['salt']}"
+        own = [variant for variant in ones[1:] if contents[0]["questions"][question].get("pages")]
+        most = max((len(variant.get("pages") or ()) for variant in own), default=0)
+        for variant in own if most else ():
+            variant["pages"] = sealing.pages_filled_up(
+                variant.get("pages") or [], most, f"{code} {variant['salt']}"
             )
     for file, content in zip(files, contents, strict=True):
         file.write_text(_as_text(content), "utf8")
@@ -406,9 +411,9 @@ def _add_names_for_others(
     for question in answers[0]:
         names = [
             bytes.fromhex(text)
-            for one in answers
-            if question in one
-            for text in one[question].names
+            for variant in answers
+            if question in variant
+            for text in variant[question].names
         ]
         if names:
             content["questions"][question]["others"] = [
@@ -470,12 +475,12 @@ def release(
     with processes_for(paths) as pool:
         made = list(pool.map(_release_one, paths, [course] * len(paths)))
         wanted = [
-            (path, number, one.pages)
-            for path, one in zip(paths, made, strict=True)
-            for number in range(1, one.variants)
+            (path, number, notebook.pages)
+            for path, notebook in zip(paths, made, strict=True)
+            for number in range(1, notebook.variants)
             if variants is None or number in variants
         ]
-        answers = {path: [one.answers] for path, one in zip(paths, made, strict=True)}
+        answers = {path: [notebook.answers] for path, notebook in zip(paths, made, strict=True)}
         if wanted:
             found = pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted))
             for (path, *_), more in zip(wanted, found, strict=True):
@@ -485,22 +490,27 @@ def release(
             for path in paths:
                 _demand_answers(answers[path])
         _demand_later(
-            course, {question: later for one in made for question, later in one.after.items()}
+            course,
+            {question: later for notebook in made for question, later in notebook.after.items()},
         )
-        for one in made:
-            for path in (course.sealed / "variants").glob(f"{one.name}-*.json"):
-                number = path.stem.removeprefix(f"{one.name}-")
-                if re.fullmatch(r"\d+", number) and int(number) >= one.variants:
+        for notebook in made:
+            for path in (course.sealed / "variants").glob(f"{notebook.name}-*.json"):
+                number = path.stem.removeprefix(f"{notebook.name}-")
+                if re.fullmatch(r"\d+", number) and int(number) >= notebook.variants:
                     # This notebook made the file when it had more variants.
                     path.unlink()
-            _even_out(one.name, one.code, course)
-            _add_names_for_others(one.name, answers[course.sources / f"{one.name}.ipynb"], course)
+            _even_out(notebook.name, notebook.code, course)
+            _add_names_for_others(
+                notebook.name, answers[course.sources / f"{notebook.name}.ipynb"], course
+            )
         if run:
             exercises = [
-                course.exercises / f"{one.name}.ipynb" for one in made if one.name != CHAPTERS
+                course.exercises / f"{notebook.name}.ipynb"
+                for notebook in made
+                if notebook.name != CHAPTERS
             ]
             list(pool.map(_run_one, exercises, [course.sealed] * len(exercises)))
-    return [one.name for one in made]
+    return [notebook.name for notebook in made]
 
 
 def _demand_sources(course: Course, known: Collection[str]) -> None:

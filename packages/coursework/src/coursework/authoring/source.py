@@ -372,7 +372,7 @@ class _Recorder:
         _demand_few_digits(name, own.shown)
         if self.by_name:
             drawn = (rule.parameters(number, self.edition) for number in range(rule.count))
-            names = names_of_variants(variant_drawn(one, text) for one in drawn)
+            names = names_of_variants(variant_drawn(parameters, text) for parameters in drawn)
             own = replace(own, names=tuple(names))
         if rule.picture and self.with_pictures:
             drawing = rule.picture(given)
@@ -514,15 +514,15 @@ def _demand_shown(file: str, notebook: NotebookNode, recorder: _Recorder) -> Non
             )
         given = recorder.given[name]
         braces = dict.fromkeys(re.findall(r"\{\{(\w+)\}\}", recorder.texts[name]))
-        unknown = [one for one in braces if one not in (*given, "picture")]
-        unshown = [one for one in given if one not in braces]
+        unknown = [parameter for parameter in braces if parameter not in (*given, "picture")]
+        unshown = [parameter for parameter in given if parameter not in braces]
         # Nested braces may be TeX, but if a parameter is shown nowhere, they are a typo.
         if unknown and unshown:
             raise author.AuthorError(
                 f"{name}: its text shows {{{{{unknown[0]}}}}}, which you have not drawn; you have "
                 f"drawn {', '.join(given)}."
             )
-        unseen = [one for one in unshown if not re.search(rf"\b{one}\b", code)]
+        unseen = [parameter for parameter in unshown if not re.search(rf"\b{parameter}\b", code)]
         # With `where`, related parameters may show its value.
         if unseen and not rule.picture and not rule.where:
             raise author.AuthorError(

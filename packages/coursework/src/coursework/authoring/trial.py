@@ -62,16 +62,16 @@ def _variants(path: Path, question: AuthoredQuestion) -> str:
         for number in range(question.public.variants)
     )
     each = "".join(
-        f"<section><h3>Variant {one.number}</h3>{_shown('', one)}"
-        f"<p>Answer: <code>{html.escape(str(one.answer))}</code></p><ul>"
+        f"<section><h3>Variant {variant.number}</h3>{_shown('', variant)}"
+        f"<p>Answer: <code>{html.escape(str(variant.answer))}</code></p><ul>"
         + "".join(
             f"<li>{to_html(str(mistake.details['text']))} "
             f"<code>{html.escape(str(mistake.answer))}</code></li>"
-            for mistake in one.mistakes
+            for mistake in variant.mistakes
             if mistake.note == "authored"
         )
         + "</ul></section>"
-        for one in own
+        for variant in own
     )
     return f'{SIDE_BY_SIDE}<div class="variants">{each}</div>' if question.public.variant else ""
 

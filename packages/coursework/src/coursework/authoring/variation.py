@@ -74,8 +74,8 @@ class Rule:
         total = math.prod(map(len, lists))
         if not self.where or len(lists) < len(self.pools) or not self.count <= total <= MOST_LISTED:
             return self
-        choices = (dict(zip(self.pools, one)) for one in itertools.product(*lists))
-        left = sum(bool(self.where(one)) for one in choices)
+        choices = (dict(zip(self.pools, values)) for values in itertools.product(*lists))
+        left = sum(bool(self.where(choice)) for choice in choices)
         return replace(self, count=min(self.count, left)) if left else self
 
     def parameters(self, number: int, edition: str = "") -> dict[str, Any]:

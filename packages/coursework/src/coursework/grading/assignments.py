@@ -61,7 +61,9 @@ class Course:
         of_term = (term or Term()).assignments
         known = {name: about.notebooks for name, about in of_term.items()}
         #: The questions of sittings, which students answer on paper and not in a notebook.
-        self.sittings = {name: one.questions for name, one in of_term.items() if one.questions}
+        self.sittings = {
+            name: about.questions for name, about in of_term.items() if about.questions
+        }
         homework = [name for name in known if name not in self.sittings] or list(self.sources)
         known |= {stem: (stem,) for stem in homework if stem not in known}
         used = {stem for name in homework for stem in known[name]}

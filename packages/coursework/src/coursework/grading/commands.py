@@ -460,13 +460,13 @@ def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> 
         f"{number_of(len(decisions), 'decision')}{others}."
     )
     foreign = [
-        one
-        for one in decisions
-        if (record := store.read(one.student, one.assignment)) is None
-        or digest_of_answer(record, one.question) != one.answer
+        decision
+        for decision in decisions
+        if (record := store.read(decision.student, decision.assignment)) is None
+        or digest_of_answer(record, decision.question) != decision.answer
     ]
     if foreign:
-        whose = ", ".join(dict.fromkeys(in_a_line(one.student, 60) for one in foreign))
+        whose = ", ".join(dict.fromkeys(in_a_line(decision.student, 60) for decision in foreign))
         print(
             f"  We ignored {len(foreign)} of them, about answers missing from this folder "
             f"({whose})."
@@ -531,8 +531,8 @@ def export(
             "coursework export: give --feedback and --nbgrader different files, which are neither "
             "the gradebook nor its filled copy."
         )
-    for one, column in gradebooks.columns(lms, store, assignment) if lms else ():
-        marks = gradebooks.Marks(store, one, as_of=as_of)
+    for name, column in gradebooks.columns(lms, store, assignment) if lms else ():
+        marks = gradebooks.Marks(store, name, as_of=as_of)
         print(*gradebooks.fill(book, marks, column, target, overwrite, dry_run), sep="\n")
         # Fill the next column in the file that has this one.
         book = book if dry_run else target

@@ -107,9 +107,9 @@ class Desk:
         questions = self.questions[record.assignment]
         own, cases = marking.of_student(questions, record.student, record, self.contracts)
         for asked in own.values():
-            for one in (asked.contract, asked.before, *asked.second_chances.values()):
-                if one is not None:
-                    self.contracts.keep(one)
+            for contract in (asked.contract, asked.before, *asked.second_chances.values()):
+                if contract is not None:
+                    self.contracts.keep(contract)
         verdicts = self.judge.marks(record)
         marks = {}
         for name, asked in own.items():
@@ -123,7 +123,9 @@ class Desk:
                 title=asked.contract.title,
                 # The worth of each line, where the author gave one.
                 rubric={
-                    line: one for line, one in asked.contract.rubric.items() if one is not None
+                    line: worth
+                    for line, worth in asked.contract.rubric.items()
+                    if worth is not None
                 },
             )
             judged = replace(case.own, judged=asked.contract.version)
@@ -231,12 +233,12 @@ def grade(
             desk.show,
         )
         demand_a_class(handed_in.work, desk.term.roster, student)
-        desk.ask(course, (one.assignment for one in handed_in.work), closing)
+        desk.ask(course, (work.assignment for work in handed_in.work), closing)
         if not as_listed:
             demand_own_numbers(handed_in.work, desk.questions, foreign, desk.term.roster)
         desk.tell(*put_renamed_aside(desk.store, handed_in, desk.journal, desk.term, dry_run))
-        keys = [(one, key_of(one, desk.asked(one)[0], running)) for one in handed_in.work]
-        waiting = [one for one, key in keys if not _is_done(desk.store, one, key)]
+        keys = [(work, key_of(work, desk.asked(work)[0], running)) for work in handed_in.work]
+        waiting = [work for work, key in keys if not _is_done(desk.store, work, key)]
         kept, refused = len(keys) - len(waiting), len(handed_in.refused)
         desk.tell(
             f"{len(keys)} to grade, {kept} of them graded before, "
@@ -266,13 +268,13 @@ def _read_and_pair(desk: Desk, course: Course, place: Path, student: str | None)
     return pair(notebooks, refused, course, desk.term, desk.store)
 
 
-def _is_done(store: Store, one: Work, key: str) -> bool:
+def _is_done(store: Store, work: Work, key: str) -> bool:
     """Check whether the work has a record of notebooks that this machine could run."""
     return any(
         record is not None
         and record.key == key
         and not any(notebook.isolation.given_up is not None for notebook in record.notebooks)
-        for record in (store.read(*one.key), store.staged(*one.key))
+        for record in (store.read(*work.key), store.staged(*work.key))
     )
 
 
@@ -283,16 +285,16 @@ def _run_and_judge(desk: Desk, waiting: Sequence[Work], running: Running) -> Non
     _ = desk.standing
 
     def finish(order: int, results: Sequence[Result]) -> Finished:
-        one = waiting[order]
-        own, cases = desk.asked(one)
-        record = record_of(one, results, own, running)
+        work = waiting[order]
+        own, cases = desk.asked(work)
+        record = record_of(work, results, own, running)
         record = replace(
             record, cases={name: answered(case, own[name]) for name, case in cases.items()}
         )
-        store.stage(desk.marked(with_marks_of(store.read(*one.key), record)))
+        store.stage(desk.marked(with_marks_of(store.read(*work.key), record)))
         return order, record.notebooks[0].isolation.as_json()
 
-    jobs = Jobs(waiting, lambda one: desk.asked(one)[0], store)
+    jobs = Jobs(waiting, lambda work: desk.asked(work)[0], store)
     for order, isolation in run(jobs, finish, running):
         store.log(f"graded: {waiting[order].student!r} {waiting[order].assignment}")
         progress.one_more(Isolation.from_json(isolation))
@@ -302,16 +304,16 @@ def _candidates(
     desk: Desk, keys: Sequence[tuple[Work, str]], waiting: Sequence[Work]
 ) -> Iterator[Record]:
     """Iterate over all records of these assignments, as they would be now."""
-    store, run_now = desk.store, {one.key for one in waiting}
-    for one, key in keys:
-        old, staged = store.read(*one.key), store.staged(*one.key)
-        if one.key in run_now and staged:
+    store, run_now = desk.store, {work.key for work in waiting}
+    for work, key in keys:
+        old, staged = store.read(*work.key), store.staged(*work.key)
+        if work.key in run_now and staged:
             yield staged
         elif old and old.key == key:
             yield desk.marked(old)
         elif staged and staged.key == key:
             yield desk.marked(with_marks_of(old, staged))
-    here = {one.key for one, _ in keys}
+    here = {work.key for work, _ in keys}
     for record in store.all():
         if (record.student, record.assignment) not in here and record.assignment in desk.questions:
             yield desk.marked(record)
@@ -323,7 +325,7 @@ def _keep_refused(store: Store, place: Path, refused: Iterable[Refused]) -> None
     everywhere[str(place.resolve())] = tuple(sorted(refused))
     write(
         store.folder / REFUSED,
-        as_text({name: [one.as_json() for one in those] for name, those in everywhere.items()}),
+        as_text({name: [file.as_json() for file in those] for name, those in everywhere.items()}),
     )
 
 

@@ -146,7 +146,7 @@ def pair(
     return HandedIn(
         [
             _work_of(student, assignment, mine, course, term)
-            for (student, assignment), mine in sorted(handed_in.items(), key=lambda one: one[0])
+            for (student, assignment), mine in sorted(handed_in.items(), key=lambda entry: entry[0])
         ],
         refused,
         left_alone,
@@ -170,7 +170,9 @@ def _work_of(
     superseded: list[Notebook] = []
     why: list[str] = []
     taken: set[str] = set()
-    for notebook in sorted(mine, key=lambda one: (ranks[one.file], by_age(one)), reverse=True):
+    for notebook in sorted(
+        mine, key=lambda notebook: (ranks[notebook.file], by_age(notebook)), reverse=True
+    ):
         names = set(notebook.named) & set(course.names[assignment])
         if not counting or (names and not names & taken):
             counting.append(notebook)
@@ -219,17 +221,17 @@ def say(
 
 def _say_whose(handed_in: HandedIn, folder: Path, show: TextIO) -> None:
     rows: dict[tuple[str, ...], None] = {}
-    for one in handed_in.work:
-        reasons = (*[""] * len(one.notebooks), *one.why)
-        for notebook, why in zip((*one.notebooks, *one.superseded), reasons):
+    for submission in handed_in.work:
+        reasons = (*[""] * len(submission.notebooks), *submission.why)
+        for notebook, why in zip((*submission.notebooks, *submission.superseded), reasons):
             known = notebook.matched, notebook.says, why
-            rows[one.student, one.assignment, notebook.file, *known] = None
+            rows[submission.student, submission.assignment, notebook.file, *known] = None
     header = ("student", "assignment", "file", "known by", "says it is of", "does not count")
     write(folder / WHOSE, lines(header, rows))
     around = {
-        one.file.partition(one.claim.place)[0].strip("/")
+        notebook.file.partition(notebook.claim.place)[0].strip("/")
         for each in handed_in.work
-        for one in each.notebooks
+        for notebook in each.notebooks
     } - {""}
     if len(around) == 1:
         (enclosing,) = around
@@ -257,9 +259,9 @@ def _say_absent(
     show: TextIO,
 ) -> None:
     people = set(term.roster.people) if term.roster else set()
-    came = {*graded, *(one.student for one in handed_in.work)}
+    came = {*graded, *(submission.student for submission in handed_in.work)}
     present = {member for name in came for member in term.members(name)}
-    damaged = {one.student for one in (*handed_in.refused, *before)} & people - present
+    damaged = {file.student for file in (*handed_in.refused, *before)} & people - present
     missing = sorted(people - present - damaged)
     for names, what in (
         (missing, "handed in nothing"),
@@ -272,7 +274,10 @@ def _say_absent(
 
 def _say_alone(handed_in: HandedIn, term: Term, store: Store, show: TextIO) -> None:
     for assignment, group in sorted(
-        {(one.assignment, term.group_of(one.student, one.assignment)) for one in handed_in.work}
+        {
+            (submission.assignment, term.group_of(submission.student, submission.assignment))
+            for submission in handed_in.work
+        }
     ):
         if alone := [
             member for member in term.groups.get(group, ()) if store.owner(member, assignment, "")
@@ -288,15 +293,16 @@ def _say_alone(handed_in: HandedIn, term: Term, store: Store, show: TextIO) -> N
 
 def _say_foreign(work: Sequence[Work], show: TextIO) -> list[Foreign]:
     foreign = [
-        (one, notebook)
-        for one in work
-        for notebook in one.notebooks
-        if notebook.says and plain_identity(notebook.says) != plain_identity(one.numbers)
+        (submission, notebook)
+        for submission in work
+        for notebook in submission.notebooks
+        if notebook.says and plain_identity(notebook.says) != plain_identity(submission.numbers)
     ]
-    for one, notebook in foreign[:MOST_SHOWN]:
+    for submission, notebook in foreign[:MOST_SHOWN]:
         print(
             f"  ! {in_a_line(notebook.file, 120)} says that it belongs to "
-            f"{in_a_line(notebook.says, 60)!r}, but we grade it for {in_a_line(one.student, 60)!r}",
+            f"{in_a_line(notebook.says, 60)!r}, but we grade it for "
+            f"{in_a_line(submission.student, 60)!r}",
             file=show,
         )
     if len(foreign) > MOST_SHOWN:
@@ -328,14 +334,18 @@ def demand_own_numbers(
     }
     saying = sum(
         bool(notebook.says)
-        for one in work
-        if one.assignment in varied
-        for notebook in one.notebooks
+        for submission in work
+        if submission.assignment in varied
+        for notebook in submission.notebooks
     )
-    wrong = [(one, notebook) for one, notebook in foreign if one.assignment in varied]
+    wrong = [
+        (submission, notebook)
+        for submission, notebook in foreign
+        if submission.assignment in varied
+    ]
     if len(wrong) <= max(FEW_FOREIGN, SHARE_FOREIGN * saying):
         return
-    (one, notebook), *_ = wrong
+    (submission, notebook), *_ = wrong
     why = (
         "The roster has different IDs for them. Their numbers depend on the first of its columns "
         "`student`, `email` and `name`."
@@ -345,9 +355,9 @@ def demand_own_numbers(
     )
     raise NothingToGrade(
         f"Of {number_of(saying, 'notebook')} with an ID, {len(wrong)} carry another student's: for "
-        f"example, {notebook.says!r} would be graded as {one.student!r}. A student's numbers "
-        f"depend on the ID, so we would judge their answers by the wrong numbers. {why} If the "
-        "list is right anyway, add --as-listed."
+        f"example, {notebook.says!r} would be graded as {submission.student!r}. A student's "
+        f"numbers depend on the ID, so we would judge their answers by the wrong numbers. {why} "
+        "If the list is right anyway, add --as-listed."
     )
 
 
@@ -363,10 +373,10 @@ def say_other_numbers(
     for assignment, asked in questions.items():
         varied = {name for name, variants in asked.items() if len(variants) > 1}
         given = other = 0
-        for one in work:
+        for submission in work:
             record = (
-                store.read(one.student, assignment)
-                if varied and one.assignment == assignment
+                store.read(submission.student, assignment)
+                if varied and submission.assignment == assignment
                 else None
             )
             for name, mark in record.marks.items() if record else ():
@@ -389,17 +399,19 @@ def demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | N
     their own names.
     """
     by_name = [
-        (one, notebook)
-        for one in work
-        for notebook in (*one.superseded, *one.notebooks)
+        (submission, notebook)
+        for submission in work
+        for notebook in (*submission.superseded, *submission.notebooks)
         if not notebook.claim.given_by_system
     ]
-    students = {one.student for one in work}
-    several = len(students) == 1 and any(notebook in one.superseded for one, notebook in by_name)
+    students = {submission.student for submission in work}
+    several = len(students) == 1 and any(
+        notebook in submission.superseded for submission, notebook in by_name
+    )
     of_notebooks = {
-        one.student
-        for one, notebook in by_name
-        if any(name.startswith(f"{one.student}/") for name in notebook.named)
+        submission.student
+        for submission, notebook in by_name
+        if any(name.startswith(f"{submission.student}/") for name in notebook.named)
     }
     if (several or of_notebooks) and roster is None and student is None:
         why = (
@@ -424,11 +436,11 @@ def put_renamed_aside(
     student whose notebook is still in its place but refused has no new name: the roster lacks the
     old one.
     """
-    work, refused = handed_in.work, {one.file for one in handed_in.refused}
-    present = {(one.student, one.assignment) for one in work}
+    work, refused = handed_in.work, {file.file for file in handed_in.refused}
+    present = {(submission.student, submission.assignment) for submission in work}
     records = [
-        (one.student, one.assignment, {(each.file, each.sha256) for each in one.notebooks})
-        for one in store.all()
+        (record.student, record.assignment, {(each.file, each.sha256) for each in record.notebooks})
+        for record in store.all()
     ]
     known = {record[:2] for record in records}
     # Nobody whom the term still knows by name was renamed.
@@ -445,20 +457,24 @@ def put_renamed_aside(
         and not refused & {file for file, _ in record[2]}
     ]
     owners: dict[tuple[str, frozenset[str]], list[Work]] = {}
-    for one in work if absent else ():
-        if (one.student, one.assignment) not in known:
-            digests = frozenset(notebook.digest for notebook in one.notebooks)
-            owners.setdefault((one.assignment, digests), []).append(one)
+    for submission in work if absent else ():
+        if (submission.student, submission.assignment) not in known:
+            digests = frozenset(notebook.digest for notebook in submission.notebooks)
+            owners.setdefault((submission.assignment, digests), []).append(submission)
     for student, assignment, files in absent:
         fitting = owners.get((assignment, frozenset(digest for _, digest in files)), [])
         # Prefer, among equal notebooks, those still in their place: then a roster has renamed the
         # student.
         there = [
-            one
-            for one in fitting
-            if files == {(notebook.file, notebook.digest) for notebook in one.notebooks}
+            submission
+            for submission in fitting
+            if files == {(notebook.file, notebook.digest) for notebook in submission.notebooks}
         ]
-        names = [one.student for one in there or fitting if one.student not in term.groups]
+        names = [
+            submission.student
+            for submission in there or fitting
+            if submission.student not in term.groups
+        ]
         if names:
             said = f"{student!r} is now {' or '.join(map(repr, names))}: "
             if dry_run:

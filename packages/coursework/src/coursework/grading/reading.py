@@ -85,7 +85,7 @@ def _reader(kind: Any) -> Reader[Any]:
     if origin is Mapping:
         return by_name(_reader(arguments[1]))
     if NoneType in arguments and len(arguments) == 2:
-        inner = _reader(next(one for one in arguments if one is not NoneType))
+        inner = _reader(next(argument for argument in arguments if argument is not NoneType))
         return lambda value, where: None if value is None else inner(value, where)
     return anything
 

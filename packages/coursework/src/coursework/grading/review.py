@@ -211,12 +211,12 @@ class Class:
     def outcome(self, cluster: Cluster) -> tuple[str, list[str]]:
         """Return a cluster's current outcome, decided only if all of it is, and who decided."""
         decided = [
-            one
+            decision
             for each in cluster.members
-            if (one := self.standing.decision(each, cluster.question))
+            if (decision := self.standing.decision(each, cluster.question))
         ]
         if len(decided) == len(cluster.members):
-            return "decided", sorted({one.who for one in decided})
+            return "decided", sorted({decision.who for decision in decided})
         return cluster.mark.judged.outcome, []
 
     def decision_on(self, cluster: Cluster, record: Record) -> Decision | None:
@@ -237,7 +237,7 @@ class Class:
         return sum(
             undecided
             and not self.standing.decision(record, cluster.question)
-            or any(one.is_open for one in self.appeals(cluster, record))
+            or any(appeal.is_open for appeal in self.appeals(cluster, record))
             for record in cluster.members
         )
 
@@ -245,9 +245,9 @@ class Class:
         if what in ("appeals", "earlier"):
             if what == "appeals":
                 return any(
-                    one.is_open
+                    appeal.is_open
                     for record in cluster.members
-                    for one in self.appeals(cluster, record)
+                    for appeal in self.appeals(cluster, record)
                 )
             return any(self.earlier(cluster, record) for record in cluster.members)
         if what == "waiting":
@@ -265,15 +265,15 @@ class Class:
         found |= dict.fromkeys(source)
         found |= dict.fromkeys(
             line
-            for one in self.journal.by_people
-            if isinstance(one, Decision) and one.question == cluster.question
-            for line in one.rubric
+            for event in self.journal.by_people
+            if isinstance(event, Decision) and event.question == cluster.question
+            for line in event.rubric
         )
         used = Counter(
             line
-            for one in self.standing.decisions.values()
-            if one.question == cluster.question
-            for line in set(one.rubric)
+            for decision in self.standing.decisions.values()
+            if decision.question == cluster.question
+            for line in set(decision.rubric)
         )
         found |= {
             line: None for question, line in self.standing.worths if question == cluster.question
@@ -300,11 +300,11 @@ class Class:
                 and filters.get("question") in (None, "", cluster.question)
                 and (not text or text in self.searchable(cluster, hide_names))
             ),
-            key=lambda one: (
-                one.assignment,
-                orders.get(one.question, 0),
-                -len(one.members),
-                one.id,
+            key=lambda cluster: (
+                cluster.assignment,
+                orders.get(cluster.question, 0),
+                -len(cluster.members),
+                cluster.id,
             ),
         )
 
@@ -332,7 +332,7 @@ class Class:
             for notebook in record.notebooks
             if (cells := self.store.work(notebook.sha256))
         ]
-        kept.sort(key=lambda one: not any(cluster.question in source for source in one[1]))
+        kept.sort(key=lambda work: not any(cluster.question in source for source in work[1]))
         for digest, cells in kept:
             near: list[int] = []
             if isinstance(cell, int) and 0 <= cell < len(cells):
@@ -417,9 +417,9 @@ class _Overview(_Page):
             clusters=found,
             outcomes=outcomes,
             left=sum(map(graded.waits, clusters)),
-            appeals={one.id for one in clusters if graded.is_shown(one, "appeals")},
-            earlier=sum(graded.is_shown(one, "earlier") for one in clusters),
-            titles={one.question: one.mark.title for one in graded.clusters.values()},
+            appeals={cluster.id for cluster in clusters if graded.is_shown(cluster, "appeals")},
+            earlier=sum(graded.is_shown(cluster, "earlier") for cluster in clusters),
+            titles={cluster.question: cluster.mark.title for cluster in graded.clusters.values()},
             text=lambda cluster: answer_as_text(cluster.answer.plain, 120),
         )
 
@@ -437,14 +437,14 @@ class _Answer(_Page):
         """Show an answer; after a collision, with everything that the grader typed."""
         graded, name = self.graded, cluster.id
         graded.read()
-        order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
+        order = [cluster.id for cluster in graded.chosen(filters, self.settings["hide_names"])]
         place = order.index(name) if name in order else None
         contract = graded.contract(cluster)
         right = contract.plain if contract else None
         chosen = self.get_argument("member", "")
         number = int(chosen) if chosen.isdecimal() and int(chosen) < len(cluster.members) else 0
         record = cluster.members[number]
-        seen = [graded.decision_on(cluster, one) for one in cluster.members]
+        seen = [graded.decision_on(cluster, member) for member in cluster.members]
         cells, near, pictures = graded.cells(cluster, record)
         judged = cluster.mark.judged
         students = {member.student for member in cluster.members}
@@ -466,20 +466,22 @@ class _Answer(_Page):
             near=near,
             pictures=pictures,
             collision=collision,
-            seen=" ".join(one.id if one else NONE for one in seen),
-            typed={one: self.get_body_argument(one, "") for one in TYPED},
+            seen=" ".join(decision.id if decision else NONE for decision in seen),
+            typed={field: self.get_body_argument(field, "") for field in TYPED},
             ticked=self.get_body_arguments("rubric"),
             decisions={
-                one.student: graded.standing.decision(one, cluster.question)
-                for one in cluster.members
+                member.student: graded.standing.decision(member, cluster.question)
+                for member in cluster.members
             },
-            points_of=lambda one: graded.standing.points(one, cluster.mark),
-            earlier={one.student: graded.earlier(cluster, one) for one in cluster.members},
-            before={one.student: graded.decision_on(cluster, one) for one in cluster.members},
+            points_of=lambda member: graded.standing.points(member, cluster.mark),
+            earlier={member.student: graded.earlier(cluster, member) for member in cluster.members},
+            before={
+                member.student: graded.decision_on(cluster, member) for member in cluster.members
+            },
             appeals=[
-                (place, one, appeal)
-                for place, one in enumerate(cluster.members)
-                for appeal in graded.appeals(cluster, one)
+                (place, member, appeal)
+                for place, member in enumerate(cluster.members)
+                for appeal in graded.appeals(cluster, member)
             ],
             history=_history(graded.journal.by_people, cluster, students),
             asked=Markup(_as_asked(contract)),
@@ -522,8 +524,8 @@ class _Answer(_Page):
         }
         if self.get_argument("form", "decision") not in deed_of_form:
             raise web.HTTPError(400, "no such form")
-        comment, why, *_ = typed = [self.get_argument(one, "").strip() for one in TYPED]
-        order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
+        comment, why, *_ = typed = [self.get_argument(field, "").strip() for field in TYPED]
+        order = [cluster.id for cluster in graded.chosen(filters, self.settings["hide_names"])]
         try:
             if max(map(len, typed)) > LONGEST_WORDS:
                 raise Collision(f"This is longer than {LONGEST_WORDS} characters.")
@@ -552,7 +554,9 @@ class _Answer(_Page):
             zip(range(len(cluster.members)), self.get_argument("seen", "").split(), strict=False)
         )
         members = [
-            (place, one) for place, one in enumerate(cluster.members) if only in ("", str(place))
+            (place, member)
+            for place, member in enumerate(cluster.members)
+            if only in ("", str(place))
         ]
         if not members:
             raise web.HTTPError(400, "no such student")
@@ -575,10 +579,14 @@ class _Answer(_Page):
         if points is None:
             all_points = self.points_said(said, worth, least=0)
         else:
-            all_points = min(worth, max(0, sum(one or 0 for one in points)))
+            all_points = min(worth, max(0, sum(line_points or 0 for line_points in points)))
         accepts = self.get_argument("accepts", "") == "yes"
         for place, record in members:
-            waiting = [one.id for one in graded.appeals(cluster, record) if one.is_open and accepts]
+            waiting = [
+                appeal.id
+                for appeal in graded.appeals(cluster, record)
+                if appeal.is_open and accepts
+            ]
             made.append(
                 graded.journal.decision(
                     record,
@@ -602,7 +610,7 @@ class _Answer(_Page):
         if not number.isdecimal() or int(number) >= len(cluster.members):
             raise web.HTTPError(400, "no such student")
         record, state = cluster.members[int(number)], self.get_argument("state")
-        of = {one.id: one for one in self.graded.appeals(cluster, record)}.get(
+        of = {appeal.id: appeal for appeal in self.graded.appeals(cluster, record)}.get(
             self.get_argument("of", "")
         )
         if bool(of) != (state in (UNDER_REVIEW, REJECTED)):
@@ -666,27 +674,37 @@ def _history(
 ) -> list[tuple[str, ...]]:
     """Return the history of a cluster's answers and its rubric in words."""
     said: list[tuple[str, ...]] = []
-    for one in events:
-        if isinstance(one, Worth):
-            if one.question == cluster.question:
+    for event in events:
+        if isinstance(event, Worth):
+            if event.question == cluster.question:
                 said.append(
-                    (one.when, one.who, "", f"“{one.line}” is worth {number(one.points)}", "")
+                    (
+                        event.when,
+                        event.who,
+                        "",
+                        f"“{event.line}” is worth {number(event.points)}",
+                        "",
+                    )
                 )
-        elif (one.assignment, one.question) == (
+        elif (event.assignment, event.question) == (
             cluster.assignment,
             cluster.question,
-        ) and one.student in students:
-            if isinstance(one, Appeal):
-                said.append((one.when, one.who, one.student, f"appeal {one.state}", one.words))
-            elif one.credit is None:
-                said.append((one.when, one.who, one.student, "took a decision back", one.why))
+        ) and event.student in students:
+            if isinstance(event, Appeal):
+                said.append(
+                    (event.when, event.who, event.student, f"appeal {event.state}", event.words)
+                )
+            elif event.credit is None:
+                said.append(
+                    (event.when, event.who, event.student, "took a decision back", event.why)
+                )
             else:
                 words = (
-                    f"{number(one.credit * cluster.mark.worth)} points"
-                    + ("" if one.points is None else " by the rubric")
-                    + (", appeal accepted" if one.appeal else "")
+                    f"{number(event.credit * cluster.mark.worth)} points"
+                    + ("" if event.points is None else " by the rubric")
+                    + (", appeal accepted" if event.appeal else "")
                 )
-                said.append((one.when, one.who, one.student, words, one.why))
+                said.append((event.when, event.who, event.student, words, event.why))
     return said
 
 

@@ -88,7 +88,7 @@ class Jobs:
         self.work, self.asked_of, self.store = work, asked_of, store
 
     def __len__(self) -> int:
-        return sum(len(one.notebooks) for one in self.work)
+        return sum(len(work.notebooks) for work in self.work)
 
     def __iter__(self) -> Iterator[Job]:
         for order in range(len(self.work)):
@@ -96,14 +96,14 @@ class Jobs:
 
     def of(self, order: int) -> Iterator[Job]:
         """Iterate over the jobs of one student's work."""
-        one = self.work[order]
-        named = {name for notebook in one.notebooks for name in notebook.named}
-        own = self.asked_of(one)
+        work = self.work[order]
+        named = {name for notebook in work.notebooks for name in notebook.named}
+        own = self.asked_of(work)
         asked = marking.asked_of_sandbox(marking.with_second_chances(own, named))
         for_a_person = any(
             kinds()[asked.contract.question.kind].by_a_person for asked in own.values()
         )
-        for part, notebook in enumerate(one.notebooks):
+        for part, notebook in enumerate(work.notebooks):
             cells = notebook.cells
             self.store.keep_work(notebook.digest, [cell["source"] for cell in cells])
             if for_a_person:
@@ -205,7 +205,7 @@ def key_of(work: Work, own: Mapping[str, Asked], running: Running) -> str:
             [
                 notebook.digest,
                 notebook.handed_in,
-                [[one.name, one.digest] for one in notebook.beside],
+                [[file.name, file.digest] for file in notebook.beside],
             ]
             for notebook in work.notebooks
         ],
@@ -225,15 +225,15 @@ def record_of(
     """Return the record of a student's work before it is judged."""
     ran, given = zip(
         *(
-            read_result(result, one.file)
-            for result, one in zip(results, work.notebooks, strict=True)
+            read_result(result, notebook.file)
+            for result, notebook in zip(results, work.notebooks, strict=True)
         )
     )
     known = marking.with_second_chances(own)
     answers = {}
     for name in given[0]:
         # The notebooks have no question in common, so take the one that has an answer.
-        answer = min((one[name] for one in given), key=_says_little)
+        answer = min((of_notebook[name] for of_notebook in given), key=_says_little)
         if answer.secret is not None and (secret := known[name].secret):
             answer = replace(answer, secret={**answer.secret, "calls": secret.digest})
         answers[name] = answer
@@ -252,7 +252,7 @@ def record_of(
                 run,
                 file=notebook.file,
                 sha256=notebook.digest,
-                beside=tuple(one.name for one in notebook.beside),
+                beside=tuple(file.name for file in notebook.beside),
                 late=notebook.late,
                 handed_in=notebook.handed_in,
             )
@@ -264,7 +264,7 @@ def record_of(
         ),
         software=software(),
         limits=vars(running.limits),
-        finished=all(one.finished for one in ran),
+        finished=all(result.finished for result in ran),
         answers=answers,
         remembered=remembered,
     )

@@ -87,7 +87,7 @@ def side_by_side(
         busy = [worker for worker in workers if worker.take_next(tasks)]
         while busy:
             for ready in wait([worker.connection for worker in busy]):
-                (worker,) = (one for one in busy if one.connection is ready)
+                (worker,) = (worker for worker in busy if worker.connection is ready)
                 try:
                     said = json.loads(worker.connection.recv_bytes())
                 except (EOFError, OSError):

@@ -203,7 +203,7 @@ def _chance(best, first, tried):
 
     This supposes that the second side's poses are unrelated, but move as far as the first side's.
     """
-    dcms = first.dcms[next(k for k, one in enumerate(first.readings) if one is best.first)]
+    dcms = first.dcms[next(k for k, reading in enumerate(first.readings) if reading is best.first)]
     gap = max(best.residual, search.SINGLE_PRECISION, min(first.doubts))
     moved = [max(search.motion(dcm[None]), 1e-9) for dcm in dcms]
     share = math.prod(

@@ -167,14 +167,14 @@ def chains(first, second, noise, expected, special):
     special : bool
         Whether the poses leave several readings open, however simple one is.
     """
-    hands = [np.linalg.det(one.dcms[0, 0]) > 0 for one in (first, second)]
+    hands = [np.linalg.det(side.dcms[0, 0]) > 0 for side in (first, second)]
     relations, left, right, inverse, relation_faults = _relations(hands[0] != hands[1], expected)
     exactly = [np.flatnonzero(relation_faults == count) for count in range(table.MOST_FAULTS + 1)]
     left_first, fits, pairs = np.swapaxes(first.dcms, -1, -2), [], []
     tried = np.zeros(table.MOST_FAULTS + 1)
     # Signed permutations and the transpose preserve the sum of fourth powers, which excludes most
     # pairs.
-    fourth = [(one.dcms**4).sum(axis=(2, 3)) for one in (first, second)]
+    fourth = [(side.dcms**4).sum(axis=(2, 3)) for side in (first, second)]
     for i, both in enumerate(_faults_of_pairs(first, second)):
         tolerance = np.maximum(first.doubts[i] + second.doubts, SINGLE_PRECISION) + noise
         for faults, count in enumerate(np.bincount(both)[: table.MOST_FAULTS + 1]):
@@ -233,7 +233,7 @@ def _chain(first, second, relation, gap):
 def _faults_of_pairs(first, second):
     """Count the faults of each reading of the first side with each of the second side's."""
     faults, shared, codes = (
-        [np.array([reading[what] for reading in one.readings]) for one in (first, second)]
+        [np.array([reading[what] for reading in side.readings]) for side in (first, second)]
         for what in ("faults", "shared", "codes")
     )
     for i in range(len(first.readings)):
@@ -267,7 +267,7 @@ def _inner_relations():
         rarity -= 0.1 * (built == read[::-1] and places == "321")
         rarity += 0.4 * (read in PROPER_EULER or built in PROPER_EULER)
         listed.append({"inside": ("angles", read, built, places), "rarity": rarity})
-    listed += [{"inside": ("quaternion", "wxyz", one, ""), "rarity": 0.1} for one in _MISREAD]
+    listed += [{"inside": ("quaternion", "wxyz", order, ""), "rarity": 0.1} for order in _MISREAD]
     plain = {"inverse": False, "body": table.SAME_AXES, "world": table.SAME_AXES, "hand": False}
     return [
         plain | each | {"inverse": inverse, "faults": 1 + inverse}
@@ -323,8 +323,12 @@ def _inside(first, second, noise):
     relations, fits = _inner_relations(), []
     tried = np.zeros(table.MOST_FAULTS + 1)
     handed_on = [
-        [k for k, reading in enumerate(one.readings) if reading["kind"] in ("matrix", "quaternion")]
-        for one in (first, second)
+        [
+            k
+            for k, reading in enumerate(side.readings)
+            if reading["kind"] in ("matrix", "quaternion")
+        ]
+        for side in (first, second)
     ]
     for i in handed_on[0]:
         reading = first.readings[i]
@@ -362,7 +366,7 @@ def with_orders(best, first, second, noise, expected):
 
     The order is scalar first or last. A chain here may have more faults than usual.
     """
-    hands = [np.linalg.det(one.dcms[0, 0]) > 0 for one in (first, second)]
+    hands = [np.linalg.det(side.dcms[0, 0]) > 0 for side in (first, second)]
     relations, left, right, inverse, _ = _relations(hands[0] != hands[1], expected)
     listed = []
     for (i, one), (j, other) in itertools.product(
@@ -379,8 +383,8 @@ def with_orders(best, first, second, noise, expected):
     return listed
 
 
-def _usual_orders(one, best):
-    for k, reading in enumerate(one.readings):
+def _usual_orders(side, best):
+    for k, reading in enumerate(side.readings):
         usual = reading["choices"].get("order") in ("wxyz", "xyzw")
         if reading is best or (usual and best["kind"] == "quaternion"):
             yield k, reading

@@ -272,8 +272,8 @@ def relations(mirrored=False):
                 else:
                     # The rows of an inverse are the world's axes, so describe them as the world's.
                     two = (of_world, others[0]) if inverse else (of_body, others[1])
-                    faults = sum(one["faults"] for one in two)
-                    rarity = sum(one["rarity"] for one in two)
+                    faults = sum(axes["faults"] for axes in two)
+                    rarity = sum(axes["rarity"] for axes in two)
                 faults += inverse
                 if faults > MOST_FAULTS:
                     continue
@@ -539,7 +539,10 @@ def of_both(first, second):
 
 def _choices(group):
     return next(
-        one["choices"] for groups in KINDS.values() for one in groups if one["group"] == group
+        choice["choices"]
+        for groups in KINDS.values()
+        for choice in groups
+        if choice["group"] == group
     )
 
 

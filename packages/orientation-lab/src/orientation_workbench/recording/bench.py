@@ -502,7 +502,7 @@ class _Bench:
 
     def _resting(self, lying: Sequence[Stretch]) -> tuple[Array, Array]:
         """Return the gyroscope's mean at rest, and the standard deviation of that mean."""
-        parts = np.concatenate([self.rates[one.first : one.last] for one in lying])
+        parts = np.concatenate([self.rates[stretch.first : stretch.last] for stretch in lying])
         return parts.mean(axis=0), parts.std(axis=0) / np.sqrt(len(parts))
 
     def _scale(
@@ -591,7 +591,9 @@ class _Bench:
         Without it, the drift would be taken for an error of scale. Also return whether the bias
         surely drifts.
         """
-        resting = np.concatenate([np.arange(one.first, one.last) for one in lying or poses])
+        resting = np.concatenate(
+            [np.arange(stretch.first, stretch.last) for stretch in lying or poses]
+        )
         courses = [
             (values - values[resting].mean()) / np.ptp(values)
             for values in (self.time, self.warmth)
@@ -608,7 +610,10 @@ class _Bench:
             return constant, False
         worst = int(np.argmax(np.abs(fit.drift) / fit.drift_spreads))
         line = fit.bias + fit.drift * course[:, None]
-        at_rest = [self._resting([one])[0] - line[(one.first + one.last) // 2] for one in lying[1:]]
+        at_rest = [
+            self._resting([stretch])[0] - line[(stretch.first + stretch.last) // 2]
+            for stretch in lying[1:]
+        ]
         if np.abs(at_rest).max(initial=0) > 0.3 * abs(fit.drift[worst]):
             return constant, False
         # With few poses a drift explains nearly anything.

@@ -504,7 +504,7 @@ def points_one_way(values: Array) -> bool:
 def unit_of_gravity(values: Array) -> tuple[str, float, float]:
     """Return the unit that fits gravity's length, its number per g, and the relative error."""
     middle = float(np.median(np.linalg.norm(values, axis=1)))
-    unit = min(GRAVITY, key=lambda one: abs(np.log(middle / GRAVITY[one])))
+    unit = min(GRAVITY, key=lambda unit: abs(np.log(middle / GRAVITY[unit])))
     if abs(np.log(middle / GRAVITY[unit])) < 0.2:
         return unit, GRAVITY[unit], middle / GRAVITY[unit] - 1
     return f"counts, {middle:.4g} to one g", middle, 0.0

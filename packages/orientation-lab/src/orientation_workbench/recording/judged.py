@@ -195,7 +195,7 @@ def filter_inputs(
     if lying:
 
         def spread(values: Array) -> float:
-            quiet = [values[one.first : one.last] for one in lying]
+            quiet = [values[stretch.first : stretch.last] for stretch in lying]
             return float(np.sqrt(np.mean([each.var(axis=0, ddof=1).mean() for each in quiet])))
 
         # A scale that is wrong by half a per cent causes that error in each rotation.
@@ -209,8 +209,8 @@ def filter_inputs(
     # In motion, pushes are taken for gravity and last for many samples, so each sample counts less.
     push = np.linalg.norm(forces, axis=1) - 1
     moving = np.ones(len(push), dtype=bool)
-    for one in lying:
-        moving[one.first : one.last] = False
+    for stretch in lying:
+        moving[stretch.first : stretch.last] = False
     usual = np.sqrt(np.mean(push[moving] ** 2)) if moving.any() else 0.0
     doubt = np.where(moving, np.hypot(usual, push) * lasting(push), 0.0)
     # Iron shows in the field's length, and lasts for many samples as well.

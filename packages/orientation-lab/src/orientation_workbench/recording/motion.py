@@ -29,7 +29,7 @@ ASSIGNMENTS = ASSIGNMENTS[np.argsort(-np.linalg.det(ASSIGNMENTS), kind="stable")
 PROPER = ASSIGNMENTS[:24]
 #: The index of the opposite of each proper one.
 OPPOSITE = np.array(
-    [24 + int(np.abs(ASSIGNMENTS[24:] + one).sum(axis=(1, 2)).argmin()) for one in PROPER]
+    [24 + int(np.abs(ASSIGNMENTS[24:] + proper).sum(axis=(1, 2)).argmin()) for proper in PROPER]
 )
 
 
@@ -291,8 +291,8 @@ def fit_axes(
 def carried(time: Array, rates: Array, poses: Sequence[Stretch]) -> Array:
     """Return rotations between the middles of poses, of shape ``(..., m - 1, 3, 3)``."""
     found = []
-    for one, other in zip(poses, poses[1:], strict=False):
-        part = slice((one.first + one.last) // 2, (other.first + other.last) // 2 + 1)
+    for pose, other in zip(poses, poses[1:], strict=False):
+        part = slice((pose.first + pose.last) // 2, (other.first + other.last) // 2 + 1)
         found.append(turned(rates[..., part, :], steps_of(time[part]))[..., -1, :, :])
     return np.stack(found, axis=-3)
 

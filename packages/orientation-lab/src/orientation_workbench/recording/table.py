@@ -166,20 +166,20 @@ def read_tables(source: Source, name: str | None = None) -> list[Table]:
         return _from_text(source, name or "recording")
     if isinstance(source, bytes):
         return _from_bytes(source, name or "recording")
-    paths = [Path(one) for one in ([source] if isinstance(source, (str, Path)) else source)]
+    paths = [Path(path) for path in ([source] if isinstance(source, (str, Path)) else source)]
     files: dict[Path, None] = {}
     for path in paths:
         if not path.exists():
             raise RecordingError(f"no such file: {path}")
         files |= {
-            one: None
-            for one in (sorted(path.rglob("*")) if path.is_dir() else [path])
-            if one == path or one.is_file() and one.suffix.lower() in TEXTS
+            file: None
+            for file in (sorted(path.rglob("*")) if path.is_dir() else [path])
+            if file == path or file.is_file() and file.suffix.lower() in TEXTS
         }
     if [*files] == paths and len(paths) == 1:
         return _from_bytes(paths[0].read_bytes(), name or paths[0].name)
     return _from_several(
-        ((one.name, one.read_bytes) for one in files), name or ", ".join(map(str, paths))
+        ((file.name, file.read_bytes) for file in files), name or ", ".join(map(str, paths))
     )
 
 
@@ -200,9 +200,9 @@ def _unpacked(content: bytes, name: str) -> list[Table]:
                 raise RecordingError(f"{name} is {EXCEL}")
             return _from_several(
                 [
-                    (Path(one).name, partial(archive.read, one))
-                    for one in names
-                    if Path(one).suffix.lower() in TEXTS
+                    (Path(file).name, partial(archive.read, file))
+                    for file in names
+                    if Path(file).suffix.lower() in TEXTS
                 ],
                 name,
             )
@@ -232,16 +232,16 @@ def _from_several(files: Iterable[tuple[str, Callable[[], bytes]]], name: str) -
     tables: list[Table] = []
     broken: list[str] = []
     reasons: list[str] = []
-    for one, read in files:
+    for file, read in files:
         try:
             tables += _from_bytes(
-                read(), one if Path(one).suffix in (".gz", ".zip") else Path(one).stem
+                read(), file if Path(file).suffix in (".gz", ".zip") else Path(file).stem
             )
         except BrokenTable as error:
             broken.append(str(error))
         except OSError as error:
             # Others may move a file in the meantime, or hold it open.
-            broken.append(f"left out {one}: {error.strerror or error}")
+            broken.append(f"left out {file}: {error.strerror or error}")
         except RecordingError as error:
             # The measurements often come with settings and notes.
             reasons.append(str(error))
@@ -268,7 +268,7 @@ def _from_text(text: str, name: str) -> list[Table]:
             f"{name} contains ROS messages: save them as a table with rostopic echo -p or ros2 "
             "topic echo --csv"
         )
-    delimiter = max(DELIMITERS, key=lambda one: _numbers_per_line(lines, one))
+    delimiter = max(DELIMITERS, key=lambda delimiter: _numbers_per_line(lines, delimiter))
     rows = [
         _split(line, delimiter)
         for line in (_stamped(lines, delimiter) if delimiter and " -> " in text else lines)
@@ -485,7 +485,7 @@ def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
     bare = [
         row
         for row in bare
-        if width - 1 <= len(row) <= width + 1 and any(re.search("[A-Za-z]", one) for one in row)
+        if width - 1 <= len(row) <= width + 1 and any(re.search("[A-Za-z]", field) for field in row)
     ]
     if not bare:
         return [f"column {k + 1}" for k in range(width)]
@@ -571,7 +571,7 @@ def _flat(entry: Mapping[str, object], before: str = "") -> dict[str, object]:
         if isinstance(value, dict):
             found |= _flat(value, f"{before}{key}.")
         elif isinstance(value, (list, tuple)):
-            found |= {f"{before}{key}[{k}]": one for k, one in enumerate(value)}
+            found |= {f"{before}{key}[{k}]": item for k, item in enumerate(value)}
         elif key != "sensor":
             found[before + key] = value
     return found

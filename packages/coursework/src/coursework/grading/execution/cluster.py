@@ -239,9 +239,9 @@ def _demand_sound(answer: object, job: Job, ours: Mapping[str, str]) -> Result:
         _, answers = read_result(result, job["id"])
         if result.get("id") != job["id"] or set(answers) != set(job["questions"]):
             raise NotPlain
-        for one in answers.values():
-            if one.outcome == "recorded":
-                read_plain(one.plain)
+        for returned in answers.values():
+            if returned.outcome == "recorded":
+                read_plain(returned.plain)
     except (NotPlain, Misread):
         raise ValueError("The cluster sent damaged data.") from None
     return result

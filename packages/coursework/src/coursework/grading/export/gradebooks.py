@@ -127,7 +127,7 @@ class Marks:
                     self.students.setdefault(member, []).append(record)
         people = set(term.roster.people) if term.roster else set()
         worth = {record.assignment: record.worth for record in self.records}
-        refused = {one.student for one in refused_of(store)}
+        refused = {file.student for file in refused_of(store)}
         self.results: dict[tuple[str, str], Result] = {}
         moment = as_of or datetime.datetime.now(datetime.UTC)
         for student in sorted(people | set(self.students)):
@@ -169,11 +169,11 @@ class Marks:
     @property
     def damaged(self) -> list[str]:
         """The students who are known to have handed in only files that we did not grade."""
-        return [student for (student, _), one in self.results.items() if one.state == DAMAGED]
+        return [student for (student, _), result in self.results.items() if result.state == DAMAGED]
 
     @property
     def excused(self) -> list[str]:
-        return [student for (student, _), one in self.results.items() if one.state == EXCUSED]
+        return [student for (student, _), result in self.results.items() if result.state == EXCUSED]
 
     def mark(self, student: str) -> Given:
         """Return the student's mark for the one assignment."""
@@ -377,7 +377,11 @@ def columns(
         return [(assignment, about[assignment].column if assignment in about else None)]
     header = [name.casefold() for name in _read(path, term.gradebook).header]
     graded = {name for _, name in Journal(store.folder).standing().given}
-    named = [(name, one.column) for name, one in about.items() if name in graded and one.column]
+    named = [
+        (name, assigned.column)
+        for name, assigned in about.items()
+        if name in graded and assigned.column
+    ]
     there = [
         (name, column)
         for name, column in named
@@ -483,7 +487,7 @@ def fill(
             listed[why_not].append(f"{student}: {there} stays" if there.strip("-") else student)
             continue
         points = "0" if student in marks.missing else number(_scaled(marks, student, out_of))
-        known = there in ("", "-") or any(_is_same(there, one) for one in ours.get(student, ()))
+        known = there in ("", "-") or any(_is_same(there, mark) for mark in ours.get(student, ()))
         if not known and not _is_same(there, points):
             if student not in overwrite or not _is_number(there):
                 listed["by hand"].append(f"{student}: {there}, and graded {points}")
@@ -529,7 +533,7 @@ def fill(
     for name, those in listed.items():
         if those:
             said.append(f"{HEADINGS[name]} ({len(those)}):")
-            said += [f"  {in_a_line(one, 200)}" for one in those]
+            said += [f"  {in_a_line(line, 200)}" for line in those]
     return said
 
 
@@ -578,7 +582,7 @@ def _is_number(there: str) -> bool:
 def _with_damaged(store: Store, names: Sequence[str]) -> tuple[list[str], list[str]]:
     """Split students without a record into those whose files were all refused, and all others."""
     refused = refused_of(store)
-    known = {_signs(one.student) for one in refused if one.student}
+    known = {_signs(file.student) for file in refused if file.student}
     damaged = [name for name in names if _signs(name) in known or _signs(turned(name)) in known]
     return damaged, [name for name in names if name not in damaged]
 
@@ -592,7 +596,8 @@ def _system(book: Gradebook) -> System:
         if all(book.column(*names) is not None for names in system.has):
             return system
     needed = (
-        f"{one.name} ({', '.join(' or '.join(names) for names in one.has)})" for one in SYSTEMS
+        f"{system.name} ({', '.join(' or '.join(names) for names in system.has)})"
+        for system in SYSTEMS
     )
     raise CannotExport(
         f"This is not a gradebook from {', '.join(needed)}, nor a Moodle one in a supported "
@@ -667,7 +672,7 @@ def _match(
     }
     # The roster may have come from another assignment, whose participants Moodle numbers otherwise.
     anew = system.name == "Moodle" and not any(
-        ("id", one.called.get("moodle")) in lines for one in everybody.values()
+        ("id", identity.called.get("moodle")) in lines for identity in everybody.values()
     )
     for student, identity in everybody.items():
         keys = _keys_of_student(system, student, identity, anew)

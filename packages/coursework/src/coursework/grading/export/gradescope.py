@@ -86,7 +86,7 @@ def write_autograder(
     files = {
         "setup.sh": SETUP.encode(),
         "run_autograder": RUN.encode(),
-        "requirements.txt": "".join(f"{one}\n" for one in requirements()).encode(),
+        "requirements.txt": "".join(f"{requirement}\n" for requirement in requirements()).encode(),
         **{
             f"solutions/{name}": data
             for stem in stems
@@ -107,7 +107,8 @@ def write_autograder(
                     file.read_bytes()
                 )
     entries = "".join(
-        f"{one.name} = {one.value}\n" for one in metadata.entry_points(group="coursework.plugins")
+        f"{plugin.name} = {plugin.value}\n"
+        for plugin in metadata.entry_points(group="coursework.plugins")
     )
     files["packages/course-1.dist-info/METADATA"] = (
         b"Metadata-Version: 2.1\nName: course\nVersion: 1\n"
@@ -141,10 +142,10 @@ def requirements() -> list[str]:
                 for extra in extras
             ):
                 continue
-            one = requirement.name, frozenset({"", *requirement.extras})
-            if one not in seen:
-                seen.add(one)
-                waiting.append(one)
+            named = requirement.name, frozenset({"", *requirement.extras})
+            if named not in seen:
+                seen.add(named)
+                waiting.append(named)
     return [f"{name}=={version}" for name, version in sorted(found.items())]
 
 
@@ -210,7 +211,7 @@ def run(home: Path = HOME) -> None:
             return _say(results, str(error))
         store = Store(out)
         if store.read(student, assignment) is None:
-            refused = [f"{Path(one.file).name}: {one.why}" for one in refused_of(store)]
+            refused = [f"{Path(file.file).name}: {file.why}" for file in refused_of(store)]
             return _say(
                 results, "\n".join(["There was no notebook that we could grade.", *refused])
             )

@@ -70,7 +70,9 @@ def variants_of(variants: Sequence[Contract]) -> dict[str, Contract]:
     A name depends only on a variant's content, so it stays the same when variants are reordered, or
     when their solution, hints or worth are corrected.
     """
-    return dict(zip(names_of_variants(one.variant for one in variants), variants, strict=True))
+    return dict(
+        zip(names_of_variants(variant.variant for variant in variants), variants, strict=True)
+    )
 
 
 def case_by_rule(name: str, variants: Sequence[Contract], identity: str) -> Case:
@@ -100,13 +102,16 @@ def questions_in(path: Path) -> dict[str, tuple[Contract, ...]]:
     return by_name(many(Contract.from_json))(json.loads(path.read_text("utf8")), str(path))
 
 
-def judged_alike(one: Contract | None, other: Contract | None) -> bool:
+def judged_alike(contract: Contract | None, other: Contract | None) -> bool:
     """Check whether two contracts judge answers in the same way.
 
     If either was not stored, we assume so.
     """
     return (
-        one is None or other is None or one.version == other.version or one.judging == other.judging
+        contract is None
+        or other is None
+        or contract.version == other.version
+        or contract.judging == other.judging
     )
 
 
@@ -192,7 +197,9 @@ def asked_of(
     others = [Asked(at(place)) for place in case.others if place.variant != case.own.variant]
     if not case.siblings and len(variants) == 1:
         return Asked(own, before, others=tuple(others))
-    siblings = [one for variant, one in by_their_names.items() if variant != case.own.variant]
+    siblings = [
+        sibling for variant, sibling in by_their_names.items() if variant != case.own.variant
+    ]
     return Asked(
         own,
         before,

@@ -411,7 +411,7 @@ class Journal:
     @property
     def by_people(self) -> list[ByPeople]:
         """The events that people entered."""
-        return [one for one in self.events if isinstance(one, ByPeople)]
+        return [event for event in self.events if isinstance(event, ByPeople)]
 
     def said_of_cut(self) -> str:
         """Return a warning if the last line was not written completely, or an empty string."""
@@ -429,21 +429,23 @@ class Journal:
     def standing(self, until: datetime.datetime | None = None) -> Standing:
         """Return the state now, or at a given time."""
         events = [
-            one
-            for one in self.events
-            if until is None or datetime.datetime.fromisoformat(one.when) <= until
+            event
+            for event in self.events
+            if until is None or datetime.datetime.fromisoformat(event.when) <= until
         ]
-        made = _in_order(one for one in events if isinstance(one, ByPeople))
+        made = _in_order(event for event in events if isinstance(event, ByPeople))
         decisions = {key: several[-1] for key, several in _not_taken_back(made).items()}
-        worths = {(one.question, one.line): one for one in made if isinstance(one, Worth)}
-        undone = {one.undoes for one in made if isinstance(one, Decision) and one.undoes}
+        worths = {(event.question, event.line): event for event in made if isinstance(event, Worth)}
+        undone = {event.undoes for event in made if isinstance(event, Decision) and event.undoes}
         accepted = {
-            one.appeal: one for one in made if isinstance(one, Decision) and one.id not in undone
+            event.appeal: event
+            for event in made
+            if isinstance(event, Decision) and event.id not in undone
         }
         steps: dict[str, list[Appeal]] = {}
-        for one in made:
-            if isinstance(one, Appeal):
-                steps.setdefault(one.appeal or one.id, []).append(one)
+        for event in made:
+            if isinstance(event, Appeal):
+                steps.setdefault(event.appeal or event.id, []).append(event)
         appeals: dict[Key, list[Appealed]] = {}
         for first, several in steps.items():
             # If somebody rejected the appeal, or took it up again, after it was accepted, that
@@ -452,7 +454,9 @@ class Journal:
             if by is not None and any(step.after == by.id for step in several):
                 by = None
             appeals.setdefault(several[0].key, []).append(Appealed(tuple(several), by))
-        given = {(one.student, one.assignment): one for one in events if isinstance(one, Given)}
+        given = {
+            (event.student, event.assignment): event for event in events if isinstance(event, Given)
+        }
         return Standing(decisions, appeals, worths, given)
 
     # -- entering events
@@ -460,29 +464,29 @@ class Journal:
     def hand_on(self, student: str, assignment: str, name: str) -> None:
         """Copy all events to another name of the same student, with their authors and times."""
         old = [
-            one
-            for one in self.events
-            if isinstance(one, Decision | Appeal)
-            and (one.student, one.assignment) == (student, assignment)
+            event
+            for event in self.events
+            if isinstance(event, Decision | Appeal)
+            and (event.student, event.assignment) == (student, assignment)
         ]
-        ids = {one.id: secrets.token_hex(8) for one in old}
+        ids = {event.id: secrets.token_hex(8) for event in old}
         copies: list[Event] = []
-        for one in old:
+        for event in old:
             same: dict[str, Any] = {
-                field: ids.get(getattr(one, field), getattr(one, field))
+                field: ids.get(getattr(event, field), getattr(event, field))
                 for field in ("id", "after", "appeal", "undoes")
-                if hasattr(one, field)
+                if hasattr(event, field)
             }
-            if isinstance(one, Decision):
-                same["why"] = f"{one.why}; was {student!r}".removeprefix("; ")
-            copies.append(replace(one, student=name, **same))
+            if isinstance(event, Decision):
+                same["why"] = f"{event.why}; was {student!r}".removeprefix("; ")
+            copies.append(replace(event, student=name, **same))
         self.append(copies)
 
     def add(self, record: Record, question: str, credit: float | None, **more: Any) -> Decision:
         """Decide on an answer of a record."""
-        one = self.decision(record, question, credit, **more)
-        self.append([one])
-        return one
+        decision = self.decision(record, question, credit, **more)
+        self.append([decision])
+        return decision
 
     def decision(
         self, record: Record, question: str, credit: float | None, **more: Any
@@ -528,14 +532,14 @@ class Journal:
                 if state == RAISED
                 else "Give the reason for rejecting the appeal."
             )
-        one = Appeal(
+        appeal = Appeal(
             **_on(record, question) | more,
             state=state,
             words=words,
             appeal=of.id if of else "",
         )
-        self.append([one], collisions=True)
-        return one
+        self.append([appeal], collisions=True)
+        return appeal
 
     @staticmethod
     def worths(
@@ -582,7 +586,10 @@ class Journal:
                 (record, standing.get((record.student, record.assignment, question), []))
                 for record in records
             ]
-            own = [(record, [one for one in several if one.who == who]) for record, several in mine]
+            own = [
+                (record, [decision for decision in several if decision.who == who])
+                for record, several in mine
+            ]
             if not any(several for _, several in own):
                 others = [several[-1] for _, several in mine if several]
                 raise Collision("You have no decision to take back.", others)
@@ -615,31 +622,38 @@ class Journal:
 
     def _demand_seen(self, events: Sequence[Event]) -> None:
         standing = self.standing()
-        decided = [one for one in events if isinstance(one, Decision)]
+        decided = [event for event in events if isinstance(event, Decision)]
         others = [
-            standing.decisions[one.key]
-            for one in decided
-            if one.key in standing.decisions and standing.decisions[one.key].id != one.after
+            standing.decisions[decision.key]
+            for decision in decided
+            if decision.key in standing.decisions
+            and standing.decisions[decision.key].id != decision.after
         ]
-        if others or any(one.after and one.key not in standing.decisions for one in decided):
+        if others or any(
+            decision.after and decision.key not in standing.decisions for decision in decided
+        ):
             raise Collision("Somebody else has decided in the meantime.", others)
-        appeals = {one.id: one for several in standing.appeals.values() for one in several}
-        for one in events:
-            if isinstance(one, Decision) and one.appeal and not appeals[one.appeal].is_open:
+        appeals = {appeal.id: appeal for several in standing.appeals.values() for appeal in several}
+        for event in events:
+            if isinstance(event, Decision) and event.appeal and not appeals[event.appeal].is_open:
                 raise Collision("Someone else has settled this appeal in the meantime.")
-            if isinstance(one, Appeal) and one.appeal and appeals[one.appeal].last != one.after:
+            if (
+                isinstance(event, Appeal)
+                and event.appeal
+                and appeals[event.appeal].last != event.after
+            ):
                 raise Collision("Someone else has changed this appeal in the meantime.")
             if (
-                isinstance(one, Appeal)
-                and not one.appeal
-                and any(x.is_open for x in standing.appeals.get(one.key, ()))
+                isinstance(event, Appeal)
+                and not event.appeal
+                and any(x.is_open for x in standing.appeals.get(event.key, ()))
             ):
                 raise Collision("An appeal against this mark is open already.")
-            if isinstance(one, Worth):
-                before = standing.worths.get((one.question, one.line))
-                if (before.id if before else "") != one.after:
+            if isinstance(event, Worth):
+                before = standing.worths.get((event.question, event.line))
+                if (before.id if before else "") != event.after:
                     raise Collision(
-                        f"Somebody else has changed the points of “{one.line}” in the meantime."
+                        f"Somebody else has changed the points of “{event.line}” in the meantime."
                     )
 
     @contextlib.contextmanager
@@ -666,7 +680,10 @@ class Journal:
             yield file
 
     def _write(self, file: io.FileIO, events: Sequence[Event]) -> None:
-        lines, whole = memoryview(b"".join(_line(one) for one in events)), file.seek(0, os.SEEK_END)
+        lines, whole = (
+            memoryview(b"".join(_line(event) for event in events)),
+            file.seek(0, os.SEEK_END),
+        )
         try:
             while lines:
                 lines = lines[file.write(lines) :]
@@ -686,17 +703,17 @@ class Journal:
         differing : list of (Decision, Decision)
             Different decisions of two people on one answer; the later one counts.
         """
-        known = {one.id for one in self.events}
+        known = {event.id for event in self.events}
         before = self.standing().decisions
-        theirs = [one for one in events_in(path) if isinstance(one, ByPeople)]
-        new = [one for one in theirs if one.id not in known]
+        theirs = [event for event in events_in(path) if isinstance(event, ByPeople)]
+        new = [event for event in theirs if event.id not in known]
         differing = [
-            (before[one.key], one)
-            for one in new
-            if isinstance(one, Decision)
-            and one.key in before
-            and (before[one.key].credit, before[one.key].answer) != (one.credit, one.answer)
-            and before[one.key].who != one.who
+            (before[event.key], event)
+            for event in new
+            if isinstance(event, Decision)
+            and event.key in before
+            and (before[event.key].credit, before[event.key].answer) != (event.credit, event.answer)
+            and before[event.key].who != event.who
         ]
         if new:
             self.append(new)
@@ -797,7 +814,7 @@ class Journal:
         for record in records:
             for question in record.marks:
                 by_names.setdefault((record.student, question), []).append(record)
-        raised = {(*one.key, one.words) for one in self.events if isinstance(one, Appeal)}
+        raised = {(*event.key, event.words) for event in self.events if isinstance(event, Appeal)}
         unused, entered = [], 0
         for number, row in rows:
             words = as_written(row["words"]).strip()
@@ -820,11 +837,11 @@ def _in_order(events: Iterable[ByPeople]) -> list[ByPeople]:
     Clocks may be wrong. A grader who saw another decision decided later, whatever the times say.
     """
     events = list(events)
-    by_id = {one.id: one for one in events}
+    by_id = {event.id: event for event in events}
     places: dict[str, tuple[str, int]] = {}
 
-    def place(one: ByPeople) -> tuple[str, int]:
-        chain = [one]
+    def place(event: ByPeople) -> tuple[str, int]:
+        chain = [event]
         while (
             chain[-1].id not in places
             and (before := by_id.get(chain[-1].after))
@@ -835,9 +852,9 @@ def _in_order(events: Iterable[ByPeople]) -> list[ByPeople]:
             if each.id not in places:
                 when, order = places.get(each.after, ("", 0))
                 places[each.id] = (when, order + 1) if when >= each.when else (each.when, 0)
-        return places[one.id]
+        return places[event.id]
 
-    return sorted(events, key=lambda one: (*place(one), one.id))
+    return sorted(events, key=lambda event: (*place(event), event.id))
 
 
 def _not_taken_back(made: Sequence[ByPeople]) -> dict[Key, list[Decision]]:
@@ -886,8 +903,8 @@ def _is_cut(line: bytes) -> bool:
     return False
 
 
-def _line(one: Event) -> bytes:
-    said = {"event": type(one).__name__.lower(), **one.as_json()}
+def _line(event: Event) -> bytes:
+    said = {"event": type(event).__name__.lower(), **event.as_json()}
     text = json.dumps(said | {"sum": _sum(said)}, ensure_ascii=False)
     return text.encode("utf8", "backslashreplace") + b"\n"
 

@@ -57,10 +57,10 @@ class Policies:
         BadPolicy
         """
         there = set(names)
-        for one in (*self.never_lower, *self.full_credit, *self.void):
-            if one.partition("@")[0] not in there:
+        for name in (*self.never_lower, *self.full_credit, *self.void):
+            if name.partition("@")[0] not in there:
                 raise BadPolicy(
-                    f"There is no question {one.partition('@')[0]!r}. The questions are "
+                    f"There is no question {name.partition('@')[0]!r}. The questions are "
                     f"{', '.join(sorted(there))}."
                 )
 

@@ -138,7 +138,7 @@ def of_student(
             case, before = today, (earlier or {}).get(name)
             if before and contracts:
                 case = case_of(name, [variants, *before], identity, contracts, shows)
-        others = [one for one in case.others if one.variant != today.own.variant]
+        others = [place for place in case.others if place.variant != today.own.variant]
         by_others = replace(case, others=(*others, today.own))
         own[name], cases[name] = asked_of(name, variants, by_others, contracts), case
     return own, cases
@@ -150,8 +150,8 @@ def with_second_chances(
     """Return a student's questions and their siblings: those that are ``named``, or all."""
     chances = {
         sibling: contract
-        for one in questions.values()
-        for sibling, contract in one.second_chances.items()
+        for asked in questions.values()
+        for sibling, contract in asked.second_chances.items()
         if named is None or sibling in named
     }
     return {name: asked.contract for name, asked in questions.items()} | chances
@@ -213,7 +213,9 @@ def load_questions(
 
     def work_out(path: Path) -> None:
         questions = questions_of(path, secret, edition)
-        as_json = {name: [one.as_json() for one in those] for name, those in questions.items()}
+        as_json = {
+            name: [contract.as_json() for contract in those] for name, those in questions.items()
+        }
         write(places[path], json.dumps(as_json, ensure_ascii=False), private=True)
 
     missing = [path for path, place in places.items() if not place.exists()]
@@ -262,7 +264,7 @@ def earlier_variants(
             earlier[name] = list[Sequence[Contract]](others[::-1])
     if lists != before:
         as_json = {
-            name: [[one.as_json() for one in those] for those in several]
+            name: [[contract.as_json() for contract in those] for those in several]
             for name, several in lists.items()
         }
         write(path, json.dumps(as_json, ensure_ascii=False), private=True)
@@ -422,8 +424,10 @@ def parts_right(contract: Contract, text: str) -> tuple[int, int, float]:
         chance = 1 / 2
     else:
         between = PARTS[kind]
-        given, wanted = ((one.split(between) if between else list(one)) for one in (text, right))
-        good = [one == other for one, other in zip(given, wanted, strict=True)]
+        given, wanted = (
+            (answer.split(between) if between else list(answer)) for answer in (text, right)
+        )
+        good = [entry == other for entry, other in zip(given, wanted, strict=True)]
         chance = 1 / len(contract.question.options or "TF")
     return sum(good), len(good), max(0, (sum(good) / len(good) - chance) / (1 - chance))
 

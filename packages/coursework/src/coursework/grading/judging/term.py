@@ -278,7 +278,9 @@ class Term:
         BadTerm
         """
         named = [("extensions", f"extensions.{student}", student) for student in self.extensions]
-        named += [("groups", one, one) for members in self.groups.values() for one in members]
+        named += [
+            ("groups", member, member) for members in self.groups.values() for member in members
+        ]
         for where, place, student in named:
             if student not in students:
                 said = f"{where} name {student!r}, but nobody in the course has that ID."
@@ -625,7 +627,7 @@ def in_zone(
         return moment
     return (max if later else min)(
         [moment.replace(tzinfo=zone, fold=fold) for fold in (0, 1)],
-        key=lambda one: one.astimezone(datetime.UTC),
+        key=lambda reading: reading.astimezone(datetime.UTC),
     )
 
 
@@ -759,9 +761,12 @@ def results_of(
     ]
     dropped = _dropped(results, term)
     results = [
-        replace(one, state="dropped") if one.assignment in dropped else one for one in results
+        replace(result, state="dropped") if result.assignment in dropped else result
+        for result in results
     ]
-    return results, _mean([one for one in results if one.state in ("counted", "missing")], term)
+    return results, _mean(
+        [result for result in results if result.state in ("counted", "missing")], term
+    )
 
 
 def result_of(
@@ -793,7 +798,9 @@ def result_of(
     else:
         points, when = record.points, _handed_in(student, record, about, term.time_zone)
         if when is None:
-            extended = any(name in term.extensions.get(one, {}) for one in term.members(group))
+            extended = any(
+                name in term.extensions.get(member, {}) for member in term.members(group)
+            )
             late = record.late and not extended
             penalty = (term.late.marked or 0.0) if late else 0.0
         elif due is not None:
@@ -827,9 +834,15 @@ def unknown_times(results: Iterable[Result], term: Term) -> list[str]:
     BadTerm
         A system marked work as late, and the term does not say what that costs.
     """
-    graded = [one for one in results if one.state not in ("missing", DAMAGED, "not due", EXCUSED)]
-    unknown = [one.assignment for one in graded if one.due and not (one.handed_in or one.late)]
-    marked = [one.assignment for one in graded if one.late and not one.handed_in]
+    graded = [
+        result for result in results if result.state not in ("missing", DAMAGED, "not due", EXCUSED)
+    ]
+    unknown = [
+        result.assignment
+        for result in graded
+        if result.due and not (result.handed_in or result.late)
+    ]
+    marked = [result.assignment for result in graded if result.late and not result.handed_in]
     if marked and term.late.marked is None and term.late.costs:
         raise BadTerm(
             f"Your system marks {number_of(len(marked), 'submission')} of "
@@ -860,16 +873,20 @@ def _handed_in(
         if found is not None and found in about.times.times:
             return about.times.times[found]
     moments = (
-        in_zone(datetime.datetime.fromisoformat(one), zone, later=False)
-        for one in [notebook.handed_in for notebook in record.notebooks]
-        if one
+        in_zone(datetime.datetime.fromisoformat(moment), zone, later=False)
+        for moment in [notebook.handed_in for notebook in record.notebooks]
+        if moment
     )
     return max(moments, key=lambda moment: moment.astimezone(datetime.UTC), default=None)
 
 
 def _mean(results: Iterable[Result], term: Term) -> float | None:
     # Exercises for practice, which are worth nothing, count for nothing.
-    parts = [(term.assignments[one.assignment].weight, one.share) for one in results if one.worth]
+    parts = [
+        (term.assignments[result.assignment].weight, result.share)
+        for result in results
+        if result.worth
+    ]
     total = sum(weight for weight, _ in parts)
     return sum(weight * share for weight, share in parts) / total if total else None
 
@@ -881,10 +898,12 @@ def _dropped(results: Iterable[Result], term: Term) -> set[str]:
     assignment contributes weight (share - m). We drop the smallest of these contributions and
     repeat until m no longer changes (Dinkelbach 1967).
     """
-    counted = {one.assignment: one for one in results if one.state in ("counted", "missing")}
+    counted = {
+        result.assignment: result for result in results if result.state in ("counted", "missing")
+    }
 
     def mean_without(names: Collection[str]) -> float | None:
-        return _mean([one for name, one in counted.items() if name not in names], term)
+        return _mean([result for name, result in counted.items() if name not in names], term)
 
     left_out: set[str] | None = None
     mean = mean_without(())

@@ -72,7 +72,7 @@ def write_course(store: Store, term: Term, *, now: datetime.datetime | None = No
     students.update(people)
     term.demand_people(store.folder / FILE, students)
     folder, rows, all_results = store.folder / FOLDER, [], list[Result]()
-    refused = {one.student for one in refused_of(store)}
+    refused = {file.student for file in refused_of(store)}
     damaged: dict[str, list[str]] = {}
     for student in sorted(students):
         records = {
@@ -134,16 +134,16 @@ def _row(student: str, results: Sequence[Result], total: float | None) -> list[o
     row: list[object] = [
         student,
         "" if total is None else round(100 * total, 2),
-        sum(one.undecided for one in results),
+        sum(result.undecided for result in results),
     ]
-    for one in results:
-        graded = one.state not in ("missing", DAMAGED, "not due")
+    for result in results:
+        graded = result.state not in ("missing", DAMAGED, "not due")
         row += [
-            one.points if graded else "",
-            one.state,
-            one.handed_in.isoformat() if one.handed_in else "",
-            one.penalty or "",
-            round(one.share, 4) if one.state in ("counted", "missing", "dropped") else "",
+            result.points if graded else "",
+            result.state,
+            result.handed_in.isoformat() if result.handed_in else "",
+            result.penalty or "",
+            round(result.share, 4) if result.state in ("counted", "missing", "dropped") else "",
         ]
     return row
 
@@ -163,7 +163,7 @@ def _write_student(
         student=student,
         total=total,
         results=results,
-        waiting=sum(one.undecided for one in results),
+        waiting=sum(result.undecided for result in results),
         links=links,
         weights={name: about.weight for name, about in term.assignments.items()},
         words=STATES,

@@ -114,7 +114,7 @@ class Refused(AsJson):
 def refused_of(store: Store) -> list[Refused]:
     """Return all refused files of all submitted folders."""
     known = store.said(REFUSED, by_name(many(Refused.from_json))) or {}
-    return [one for place in known.values() for one in place]
+    return [file for place in known.values() for file in place]
 
 
 class Beside(NamedTuple):
@@ -207,12 +207,12 @@ class Notebook(NamedTuple):
     @property
     def files(self) -> dict[str, bytes]:
         """The bytes of the files beside it, by name."""
-        return {one.name: _unchanged(one) for one in self.beside}
+        return {file.name: _unchanged(file) for file in self.beside}
 
 
-def _unchanged(one: Beside | Notebook) -> bytes:
-    data = one.read()
-    if hashlib.sha256(data).hexdigest() != one.digest:
+def _unchanged(file: Beside | Notebook) -> bytes:
+    data = file.read()
+    if hashlib.sha256(data).hexdigest() != file.digest:
         raise Unfit("It changed while we were grading the class.")
     return data
 
@@ -275,7 +275,7 @@ def take_in(
                 _take(found, others, refused, layout, ADDED.sub("", inner), when, data, name)
         else:
             _take(found, others, refused, layout, name, when, read, name)
-    have = {one.claim.source for one in found}
+    have = {notebook.claim.source for notebook in found}
     # Moodle numbers the participants of each assignment anew. A number that matches nobody, beside
     # others that match, belongs to somebody who is not in the roster.
     numbered_anew = roster is not None and not any(
@@ -285,9 +285,9 @@ def take_in(
     )
     notebooks: list[Notebook] = []
     for submitted in found:
-        if one := _with_student(submitted, roster, student, refused, numbered_anew):
-            beside, handed_in = _beside(one, others), _when(one, others, layout)
-            notebooks.append(one._replace(beside=beside, handed_in=handed_in))
+        if notebook := _with_student(submitted, roster, student, refused, numbered_anew):
+            beside, handed_in = _beside(notebook, others), _when(notebook, others, layout)
+            notebooks.append(notebook._replace(beside=beside, handed_in=handed_in))
     notebooks = _without_conflicts(notebooks, roster, refused)
     for source, files_of_source in others.items():
         for claim, name, _ in files_of_source:
@@ -304,7 +304,7 @@ def take_in(
                 )
                 can = " The notebook in the same folder can read it." if source in have else ""
                 refused.append(Refused(name, whose, why + can))
-    return notebooks, [_of_whom(one, layout, roster, numbered_anew) for one in refused]
+    return notebooks, [_of_whom(file, layout, roster, numbered_anew) for file in refused]
 
 
 #: The ending that a browser adds to notebooks when it does not know their type.
@@ -324,12 +324,14 @@ def _of_whom(
 TIMESTAMP = "timestamp.txt"
 
 
-def _when(one: Notebook, others: Others, layout: Layout) -> str:
+def _when(notebook: Notebook, others: Others, layout: Layout) -> str:
     """Return the system's time of a submission, never that of a student's file; empty if none."""
-    if one.claim.handed_in or not layout.is_nbgraders:
-        return one.claim.handed_in
-    place = PurePosixPath(*PurePosixPath(one.file).parts[: len(layout.enclosing) + 2], TIMESTAMP)
-    for _, name, read in others.get(one.claim.source, ()):
+    if notebook.claim.handed_in or not layout.is_nbgraders:
+        return notebook.claim.handed_in
+    place = PurePosixPath(
+        *PurePosixPath(notebook.file).parts[: len(layout.enclosing) + 2], TIMESTAMP
+    )
+    for _, name, read in others.get(notebook.claim.source, ()):
         if PurePosixPath(name) == place:
             with contextlib.suppress(Unfit, UnicodeDecodeError):
                 return as_time(read()[:200].decode("utf8").strip()) or ""
@@ -396,7 +398,9 @@ def _take(
     except Unfit as error:
         refused.append(Refused(name, claim.student, str(error)))
         return
-    named = sorted({*(one for cell in cells for one in CHECK.findall(cell["source"])), *grade_ids})
+    named = sorted(
+        {*(checked for cell in cells for checked in CHECK.findall(cell["source"])), *grade_ids}
+    )
     found.append(
         Notebook(
             name,
@@ -428,7 +432,7 @@ def _says(cells: Iterable[CodeCell]) -> str:
 
 
 def _with_student(
-    one: Notebook,
+    notebook: Notebook,
     roster: Roster | None,
     student: str | None,
     refused: list[Refused],
@@ -437,27 +441,29 @@ def _with_student(
     """Return the notebook with its student, or ``None`` if nobody knows whose it is."""
     known = {
         kind: value
-        for kind, value in one.claim.keys
+        for kind, value in notebook.claim.keys
         if kind in ("canvas", "moodle", "brightspace", "name")
     }
-    if "letters" in dict(one.claim.keys):
-        known["name"] = dict(one.claim.keys)["letters"]
+    if "letters" in dict(notebook.claim.keys):
+        known["name"] = dict(notebook.claim.keys)["letters"]
     if student is not None:
         identity = roster.identity(student) if roster else Identity()
-        return one._replace(student=student, matched="as you said", identity=identity)
-    people = one.claim.keys, *one.claim.others
-    if one.claim.others and not (roster and roster.are_a_group(people)):
-        refused.append(Refused(one.file, one.claim.student, NO_GROUP))
+        return notebook._replace(student=student, matched="as you said", identity=identity)
+    people = notebook.claim.keys, *notebook.claim.others
+    if notebook.claim.others and not (roster and roster.are_a_group(people)):
+        refused.append(Refused(notebook.file, notebook.claim.student, NO_GROUP))
         return None
     if roster is None:
-        identity = Identity(known if one.claim.given_by_system else {})
-        return one._replace(matched="as its name or folder says", identity=identity)
-    found, how = roster.find(one.claim.keys, one.claim.place, numbered_anew)
+        identity = Identity(known if notebook.claim.given_by_system else {})
+        return notebook._replace(matched="as its name or folder says", identity=identity)
+    found, how = roster.find(notebook.claim.keys, notebook.claim.place, numbered_anew)
     if found is None:
-        refused.append(Refused(one.file, one.claim.student, f"{how} Whose is it? {NOT_MATCHED}"))
+        refused.append(
+            Refused(notebook.file, notebook.claim.student, f"{how} Whose is it? {NOT_MATCHED}")
+        )
         return None
     identity = roster.identity(found)
-    return one._replace(
+    return notebook._replace(
         student=found,
         matched=how,
         identity=Identity(
@@ -485,29 +491,31 @@ def _without_conflicts(
 ) -> list[Notebook]:
     """Leave out all notebooks of a student whom two submissions claim: one may be a classmate's."""
     claimed: dict[str | tuple[str, str], list[Notebook]] = {}
-    for one in notebooks:
-        for identity in _identities(one, roster):
-            claimed.setdefault(identity, []).append(one)
+    for notebook in notebooks:
+        for identity in _identities(notebook, roster):
+            claimed.setdefault(identity, []).append(notebook)
     unsure: dict[str, set[str]] = {}
     for claims in claimed.values():
-        sources = {one.claim.source for one in claims}
-        for one in claims if len(sources) > 1 else ():
-            unsure.setdefault(one.student, set()).update(sources)
-    for one in notebooks:
-        if one.student in unsure:
-            those = ", ".join(sorted(unsure[one.student]))
+        sources = {notebook.claim.source for notebook in claims}
+        for notebook in claims if len(sources) > 1 else ():
+            unsure.setdefault(notebook.student, set()).update(sources)
+    for notebook in notebooks:
+        if notebook.student in unsure:
+            those = ", ".join(sorted(unsure[notebook.student]))
             why = f"Two submissions claim to be this student's: {those}. {CLAIMED_TWICE}"
-            refused.append(Refused(one.file, one.student, why))
-    return [one for one in notebooks if one.student not in unsure]
+            refused.append(Refused(notebook.file, notebook.student, why))
+    return [notebook for notebook in notebooks if notebook.student not in unsure]
 
 
-def _identities(one: Notebook, roster: Roster | None) -> tuple[str | tuple[str, str], ...]:
+def _identities(notebook: Notebook, roster: Roster | None) -> tuple[str | tuple[str, str], ...]:
     """Return the identities that a notebook claims; none if the person who grades has named it."""
-    if one.matched == "as you said":
+    if notebook.matched == "as you said":
         return ()
     # Without a roster, names that look the same or differ only in capitals are the same claim. A
     # roster tells such names apart.
-    return looks_like(one.student) if roster is None else one.student, *_numbers(one.claim)
+    return looks_like(notebook.student) if roster is None else notebook.student, *_numbers(
+        notebook.claim
+    )
 
 
 def _numbers(claim: Claim) -> list[tuple[str, str]]:
@@ -519,11 +527,11 @@ def _numbers(claim: Claim) -> list[tuple[str, str]]:
     ]
 
 
-def _beside(one: Notebook, others: Others) -> tuple[Beside, ...]:
+def _beside(notebook: Notebook, others: Others) -> tuple[Beside, ...]:
     """Return the files in the notebook's folder or below, by the names that its code would use."""
     found: list[Beside] = []
-    folder, total = PurePosixPath(one.claim.file).parent, 0
-    for claim, _, read in others.get(one.claim.source, ()):
+    folder, total = PurePosixPath(notebook.claim.file).parent, 0
+    for claim, _, read in others.get(notebook.claim.source, ()):
         name = PurePosixPath(claim.file if claim else "")
         if not name.is_relative_to(folder) or name == folder:
             continue
@@ -535,7 +543,7 @@ def _beside(one: Notebook, others: Others) -> tuple[Beside, ...]:
         if len(found) >= MOST_BESIDE or total > MOST_BYTES_BESIDE:
             break
         found.append(Beside(str(name.relative_to(folder)), hashlib.sha256(data).hexdigest(), read))
-    if one.claim.source.startswith("canvas "):
+    if notebook.claim.source.startswith("canvas "):
         found += _as_named_before(found)
     return tuple(sorted(found))
 
@@ -543,12 +551,12 @@ def _beside(one: Notebook, others: Others) -> tuple[Beside, ...]:
 def _as_named_before(found: Sequence[Beside]) -> list[Beside]:
     """List files that Canvas renamed on resubmission by their old names, which the code uses."""
     numbered: dict[str, list[tuple[int, Beside]]] = {}
-    names = {one.name for one in found}
-    for one in found:
-        path = PurePosixPath(one.name)
+    names = {file.name for file in found}
+    for file in found:
+        path = PurePosixPath(file.name)
         again = RESUBMITTED.fullmatch(path.stem)
         if again and (bare := str(path.with_name(again["stem"] + path.suffix))) not in names:
-            numbered.setdefault(bare, []).append((int(again["number"]), one))
+            numbered.setdefault(bare, []).append((int(again["number"]), file))
     return [
         max(several, key=lambda entry: entry[0])[1]._replace(name=bare)
         for bare, several in numbered.items()
@@ -874,10 +882,10 @@ def remembered_in(data: bytes) -> dict[str, Remembered]:
             or len(found) >= MOST_CELLS
         ):
             continue
-        one = found.get(about["question"], Remembered())
+        earlier = found.get(about["question"], Remembered())
         found[about["question"]] = Remembered(
-            max(one.tries, int(about["tries"][:6])),
-            about.get("help", one.help),
+            max(earlier.tries, int(about["tries"][:6])),
+            about.get("help", earlier.help),
         )
     return found
 

@@ -266,7 +266,9 @@ def in_english(header: Iterable[str]) -> tuple[dict[str, str], str]:
     >>> in_english(["Student", "ID", "Section"])
     ({}, 'no')
     """
-    there = {name.replace("’", "'"): name for name in (one.strip().casefold() for one in header)}
+    there = {
+        name.replace("’", "'"): name for name in (heading.strip().casefold() for heading in header)
+    }
     for *words, no in LANGUAGES.values():
         known = {
             there[theirs]: ours

@@ -136,9 +136,9 @@ class Roster:
                 "`name` or `email`, or a gradebook from Canvas, Moodle or Brightspace."
             )
         addresses = {
-            name: one.called["email"][0]
-            for name, one in self.people.items()
-            if one.called.get("email")
+            name: person.called["email"][0]
+            for name, person in self.people.items()
+            if person.called.get("email")
         }
         for name, own in local_parts(addresses).items():
             self.people[name] = replace(self.people[name], local_part=own)
