@@ -147,13 +147,13 @@ def typeset_docstring(app, what, name, documented, options, lines):
     """
     text = re.sub(
         r"^( *)\$\$\n(.*?)^ *\$\$$",
-        lambda found: f"{found[1]}.. math::\n\n" + indent(found[2], "   "),
+        lambda match: f"{match[1]}.. math::\n\n" + indent(match[2], "   "),
         "\n".join(lines),
         flags=re.MULTILINE | re.DOTALL,
     )
     lines[:] = re.sub(
         r"``.+?``|\$(?!\s)([^$]+)(?<!\s)\$(?!\d)",
-        lambda found: f":math:`{found[1]}`" if found[1] else found[0],
+        lambda match: f":math:`{match[1]}`" if match[1] else match[0],
         text,
         flags=re.DOTALL,
     ).split("\n")

@@ -199,7 +199,7 @@ def _explain(chosen):
             raise ValueError(f"--noise is {chosen.noise:g}: it must be at least 0 degrees")
         texts = [_given(chosen.first), _given(chosen.second)]
         declared = [_declared(words) for words in (chosen.first_is, chosen.second_is)]
-        found = explain(
+        explanation = explain(
             *texts,
             first_declared=declared[0],
             second_declared=declared[1],
@@ -216,18 +216,18 @@ def _explain(chosen):
             print(f"orientation: {error}", file=sys.stderr)
         return BAD_INPUT
     if chosen.json:
-        print(json.dumps(as_data(found), indent=2))
+        print(json.dumps(as_data(explanation), indent=2))
     else:
-        for sentence in sentences(found):
+        for sentence in sentences(explanation):
             print(sentence)
-        if found.has_line:
+        if explanation.has_line:
             print("Fix it with this line (NumPy and SciPy; `second` is one pose):")
-            print(f"    {mend.python_line(found.chains[0])}")
-            print(f"The matrices satisfy {mend.formula(found.chains[0])}.")
+            print(f"    {mend.python_line(explanation.chains[0])}")
+            print(f"The matrices satisfy {mend.formula(explanation.chains[0])}.")
         if chosen.all:
-            for chain in found.chains[1:]:
+            for chain in explanation.chains[1:]:
                 print("or: " + "; ".join(chain.words() or ["both mean the same"]))
-    return EXIT_CODES[found.verdict]
+    return EXIT_CODES[explanation.verdict]
 
 
 def as_data(explanation):

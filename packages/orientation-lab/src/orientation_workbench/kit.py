@@ -109,18 +109,20 @@ def convention_of(
     if result.shape[1:] in ((3, 4), (4, 4)):
         result = result[:, :3, :3]
     result = result.reshape(len(_TURNS), -1)
-    found = explain(np.array(asked), result, first_declared=known[0], second_declared=known[1])
-    if not found.chains:
+    explanation = explain(
+        np.array(asked), result, first_declared=known[0], second_declared=known[1]
+    )
+    if not explanation.chains:
         raise ValueError(
             "no convention known to this kit explains the answer: for "
             f"{np.round(asked[0], 4).tolist()} the function returned "
             f"{np.round(result[0], 4).tolist()}"
         )
-    best = found.chains[0]
+    best = explanation.chains[0]
     relation = best.relation
     return Convention(
         best.first["choices"], best.second["choices"], relation["inverse"], relation["body"],
-        relation["world"], found.faults,
+        relation["world"], explanation.faults,
     )  # fmt: skip
 
 
@@ -180,26 +182,27 @@ def assert_convention(
         raise ValueError(
             f"{', '.join(sorted(unknown))} is not known; choose from {', '.join(EXPECTED)}"
         )
-    found = convention_of(function, takes, gives=gives, sequence=sequence)
+    convention = convention_of(function, takes, gives=gives, sequence=sequence)
     wrong = []
     for word, group in EXPECTED.items():
         wanted = expected.get(word, table.BOOK[group])
         wrong += [
-            f"{group}: {side[group]}, not {wanted}" for side in (found.takes, found.gives)
+            f"{group}: {side[group]}, not {wanted}" for side in (convention.takes, convention.gives)
             if group in side and side[group] != wanted
         ]  # fmt: skip
     if sequence:
         wrong += [
             f"sequence: {side['sequence']}, not {sequence}"
-            for side in (found.takes, found.gives) if side.get("sequence", sequence) != sequence
+            for side in (convention.takes, convention.gives)
+            if side.get("sequence", sequence) != sequence
         ]  # fmt: skip
-    if found.inverse != inverse:
+    if convention.inverse != inverse:
         wrong.append(
             "the inverse, transposed or conjugate"
-            if found.inverse
+            if convention.inverse
             else "the inverse was expected, but this is not the inverse"
         )
-    for name, axes, wanted in (("body", found.body, body), ("world", found.world, world)):
+    for name, axes, wanted in (("body", convention.body, body), ("world", convention.world, world)):
         if " ".join(axes) != wanted:
             wrong.append(f"the {name}'s axes: {' '.join(axes)}, not {wanted}")
     assert not wrong, f"a different convention from the one expected: {'; '.join(wrong)}"

@@ -463,7 +463,7 @@ class AuthoredQuestion:
         )
         wanted = []
         for text, entry in self.entries.items():
-            names = [short_name(*found) for found in entry.notes[:2]]
+            names = [short_name(*note) for note in entry.notes[:2]]
             # The author's own words for a mistake are not in the catalogue.
             known = all(name in catalogue for name in names)
             plain = (

@@ -113,8 +113,8 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
     """
     paths = notebooks_in(course.sources, only)
     with processes_for(paths) as pool:
-        found = list(pool.map(_asked_in, paths, [course] * len(paths)))
-    asked = {name: question for some in found for name, question in some.items()}
+        by_notebook = list(pool.map(_asked_in, paths, [course] * len(paths)))
+    asked = {name: question for some in by_notebook for name, question in some.items()}
     exercises = {
         name: question for name, question in asked.items() if name.partition("/")[0] != CHAPTERS
     }

@@ -119,8 +119,8 @@ class Page(Markup):
     def of(cls, text: str, folder: str) -> Page:
         files: dict[str, bytes] = {}
 
-        def as_file(found: re.Match[str]) -> str:
-            kind, coded, content = found.groups()
+        def as_file(match: re.Match[str]) -> str:
+            kind, coded, content = match.groups()
             data = urllib.parse.unquote_to_bytes(content)
             data = base64.b64decode(data) if coded else data
             name = f"{hashlib.sha256(data).hexdigest()[:12]}.{kind}"

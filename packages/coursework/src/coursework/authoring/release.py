@@ -295,12 +295,12 @@ def _answer_of(question: AuthoredQuestion) -> str:
 def _demand_answers(answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
     """Reject variants with one answer, since a classmate's would be right for everybody."""
     for question in answers[0]:
-        found = [variant[question].answer for variant in answers if question in variant]
-        if len(found) > 1 and len(set(found)) == 1:
+        all_answers = [variant[question].answer for variant in answers if question in variant]
+        if len(all_answers) > 1 and len(set(all_answers)) == 1:
             raise AuthorError(
-                f"{question}: all of its {len(found)} variants have the same answer, "
-                f"{found[0][:60]}. Vary something that the answer depends on, or ask the question "
-                "without variants."
+                f"{question}: all of its {len(all_answers)} variants have the same answer, "
+                f"{all_answers[0][:60]}. Vary something that the answer depends on, or ask the "
+                "question without variants."
             )
 
 
@@ -482,8 +482,8 @@ def release(
         ]
         answers = {path: [notebook.answers] for path, notebook in zip(paths, made, strict=True)}
         if wanted:
-            found = pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted))
-            for (path, *_), more in zip(wanted, found, strict=True):
+            solved = pool.map(_release_variant, *zip(*wanted, strict=True), [course] * len(wanted))
+            for (path, *_), more in zip(wanted, solved, strict=True):
                 answers[path].append(more)
         # A few variants may have the same answer by chance, so compare only if all are made.
         if variants is None:

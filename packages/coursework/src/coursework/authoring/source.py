@@ -111,20 +111,20 @@ def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
     AuthorError
         There are none, or a name does not exist.
     """
-    found = sorted(Path(folder).glob("*.ipynb"))
-    if not found:
+    notebooks = sorted(Path(folder).glob("*.ipynb"))
+    if not notebooks:
         raise author.AuthorError(
             f"There is no notebook with solutions in {folder}. If you keep the solutions in a "
             "private repository, fetch them first. Without them you can neither release nor "
             "grade."
         )
-    unknown = sorted(set(only) - {path.stem for path in found})
+    unknown = sorted(set(only) - {path.stem for path in notebooks})
     if unknown:
         raise author.AuthorError(
             f"{folder} has no {unknown[0]}.ipynb; choose from "
-            f"{', '.join(path.stem for path in found)}."
+            f"{', '.join(path.stem for path in notebooks)}."
         )
-    return [path for path in found if not only or path.stem in only]
+    return [path for path in notebooks if not only or path.stem in only]
 
 
 def processes_for(paths: Collection[Path]) -> ProcessPoolExecutor:
@@ -265,13 +265,13 @@ def _with_pictures(cell: NotebookNode, folder: Path) -> str:
     """
     pasted = cell.pop("attachments", {})
 
-    def in_text(found: re.Match[str]) -> str:
-        name = found["name"]
+    def in_text(match: re.Match[str]) -> str:
+        name = match["name"]
         kind = mimetypes.guess_type(name)[0]
         data = pasted.get(name.removeprefix("attachment:"), {}).get(kind) or base64.b64encode(
             (folder / urllib.parse.unquote(name)).read_bytes()
         ).decode("ascii")
-        return f'<img alt="{html.escape(found["alt"])}" src="data:{kind};base64,{data}">'
+        return f'<img alt="{html.escape(match["alt"])}" src="data:{kind};base64,{data}">'
 
     return PICTURE.sub(in_text, cell.source)
 
@@ -432,10 +432,10 @@ def _demand_marks(text: str, where: str) -> None:
     """Reject a misspelt mark, which would leave a solution in the students' notebook."""
     open_one = ""
     for line in text.splitlines():
-        found = MARK.fullmatch(line)
-        if not found:
+        match = MARK.fullmatch(line)
+        if not match:
             continue
-        what, marked = found[1], found[2].rstrip()
+        what, marked = match[1], match[2].rstrip()
         if line.strip() != f"### {what} {marked}" or what != what.upper() or marked not in MARKED:
             known = ", ".join(f"`### {what.upper()} {name}`" for name in MARKED)
             raise author.AuthorError(
@@ -458,10 +458,10 @@ def _demand_pi(file: str, notebook: NotebookNode) -> None:
     """Reject a rounded pi, by which an answer with all digits would be wrong."""
     for number, cell in enumerate(notebook.cells):
         for region in SOLUTION.findall(cell.source) if cell.cell_type == "code" else ():
-            found = PI_ROUNDED.search(re.sub(r"#.*", "", region))
-            if found:
+            match = PI_ROUNDED.search(re.sub(r"#.*", "", region))
+            if match:
                 raise author.AuthorError(
-                    f"{file}, cell {number}: the solution uses {found[0]} for pi, so a student "
+                    f"{file}, cell {number}: the solution uses {match[0]} for pi, so a student "
                     "who uses all the digits would be marked wrong. Write `sm.pi` or `math.pi`."
                 )
 
@@ -469,10 +469,10 @@ def _demand_pi(file: str, notebook: NotebookNode) -> None:
 def _demand_few_digits(name: str, shown: Mapping[str, str]) -> None:
     """Reject texts that would show numbers such as 0.30000000000000004."""
     for parameter, text in shown.items():
-        found = re.search(rf"\d*\.\d{{{MOST_PLACES + 1},}}", text)
-        if found:
+        match = re.search(rf"\d*\.\d{{{MOST_PLACES + 1},}}", text)
+        if match:
             raise author.AuthorError(
-                f"{name}: its text would show {found[0]} for {parameter}. Round it where you draw "
+                f"{name}: its text would show {match[0]} for {parameter}. Round it where you draw "
                 "it: round(value, 3)."
             )
 
@@ -538,13 +538,13 @@ def _texts_of_variants(notebook: NotebookNode) -> dict[str, str]:
     """
     texts: dict[str, str] = {}
     for cell, after in itertools.pairwise([*notebook.cells, None]):
-        found = drawn_in(cell.source) if cell.cell_type == "code" else None
-        if found:
+        drawn = drawn_in(cell.source) if cell.cell_type == "code" else None
+        if drawn:
             if after is None or after.cell_type != "markdown":
                 raise author.AuthorError(
-                    f"{found[1]}: put the text of the question right after its variants."
+                    f"{drawn[1]}: put the text of the question right after its variants."
                 )
-            texts[found[1]] = after.source
+            texts[drawn[1]] = after.source
     return texts
 
 
@@ -578,12 +578,12 @@ def texts_of_questions(
         elif cell.cell_type == "markdown":
             above.append(cell.source)
         elif cell.cell_type == "code":
-            found = checked_in([cell.source])
+            checked = checked_in([cell.source])
             # The notebook's title, with its introduction to all questions, is no part of the first.
             texts |= dict.fromkeys(
-                found, "\n\n".join(above[len(above) > 1 and above[0].startswith("# ") :])
+                checked, "\n\n".join(above[len(above) > 1 and above[0].startswith("# ") :])
             )
-            above = [] if found else above
+            above = [] if checked else above
     return texts
 
 
@@ -675,11 +675,11 @@ def posed(text: str, owners: Mapping[str, str]) -> str:
 
 def in_variants(text: str) -> str:
     """Return a cell that draws variants as students get it, where it shows their variant."""
-    found = drawn_in(text)
+    drawn = drawn_in(text)
     return (
         text
-        if found is None
-        else VARIANTS.sub("", text) + f'{found[0]} = variant("{found[1]}")\n{found[0]}'
+        if drawn is None
+        else VARIANTS.sub("", text) + f'{drawn[0]} = variant("{drawn[1]}")\n{drawn[0]}'
     )
 
 

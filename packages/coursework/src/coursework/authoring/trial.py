@@ -93,7 +93,7 @@ def _under(text: str) -> str:
 
 def _with_mathematics(page: str) -> str:
     """Return the page with its formulas as MathML."""
-    return re.sub(r"(\${1,2})([^$<]+)\1", lambda found: mathml(html.unescape(found[2])), page)
+    return re.sub(r"(\${1,2})([^$<]+)\1", lambda match: mathml(html.unescape(match[2])), page)
 
 
 def _rubric(question: AuthoredQuestion) -> str:

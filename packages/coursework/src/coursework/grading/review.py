@@ -159,9 +159,9 @@ class Class:
         if not text:
             return text
         said = SAYS.sub(
-            lambda found: found[0].replace(found["who"], self._alias(found["who"])), text
+            lambda match: match[0].replace(match["who"], self._alias(match["who"])), text
         )
-        return self._names.sub(lambda found: self._alias(found[0]), said)
+        return self._names.sub(lambda match: self._alias(match[0]), said)
 
     def _alias(self, name: str) -> str:
         return self._known.get(plain_identity(name), "somebody")
@@ -259,11 +259,11 @@ class Class:
     ) -> list[tuple[str, float | None, float | None, int]]:
         """Return a rubric's lines, each with its worth now and in the source, and its use count."""
         source = record.marks[cluster.question].rubric
-        found = dict.fromkeys(
+        lines = dict.fromkeys(
             self.questions[cluster.question].rubric if cluster.question in self.questions else ()
         )
-        found |= dict.fromkeys(source)
-        found |= dict.fromkeys(
+        lines |= dict.fromkeys(source)
+        lines |= dict.fromkeys(
             line
             for event in self.journal.by_people
             if isinstance(event, Decision) and event.question == cluster.question
@@ -275,7 +275,7 @@ class Class:
             if decision.question == cluster.question
             for line in set(decision.rubric)
         )
-        found |= {
+        lines |= {
             line: None for question, line in self.standing.worths if question == cluster.question
         }
         return [
@@ -285,7 +285,7 @@ class Class:
                 source.get(line),
                 used[line],
             )
-            for line in found
+            for line in lines
         ]
 
     def chosen(self, filters: Mapping[str, str], hide_names: bool = False) -> list[Cluster]:
@@ -371,16 +371,18 @@ class _Page(web.RequestHandler):
 
     @property
     def graded(self) -> Class:
-        found: Class = self.settings["graded"]
-        return found
+        graded: Class = self.settings["graded"]
+        return graded
 
     def write_error(self, status_code: int, **about: object) -> None:
         self.finish(f"{status_code}\n")
 
     def filters(self) -> dict[str, str]:
-        found = {name: self.get_argument(name, "")[:200] for name in ("show", "question", "search")}
-        found["show"] = found["show"] if found["show"] in SHOWN else "waiting"
-        return found
+        filters = {
+            name: self.get_argument(name, "")[:200] for name in ("show", "question", "search")
+        }
+        filters["show"] = filters["show"] if filters["show"] in SHOWN else "waiting"
+        return filters
 
     def show(self, template: str, **about: object) -> None:
         settings = self.settings
@@ -408,13 +410,13 @@ class _Overview(_Page):
     def get(self, secret: str) -> None:
         filters, graded = self.filters(), self.graded
         graded.read()
-        found = graded.chosen(filters, self.settings["hide_names"])
-        outcomes = {cluster.id: graded.outcome(cluster) for cluster in found}
+        shown = graded.chosen(filters, self.settings["hide_names"])
+        outcomes = {cluster.id: graded.outcome(cluster) for cluster in shown}
         clusters = graded.clusters.values()
         self.show(
             "overview.html",
             filters=filters,
-            clusters=found,
+            clusters=shown,
             outcomes=outcomes,
             left=sum(map(graded.waits, clusters)),
             appeals={cluster.id for cluster in clusters if graded.is_shown(cluster, "appeals")},
@@ -665,8 +667,8 @@ class _Answer(_Page):
             ) from None
 
     def worth_in_force(self, cluster: Cluster, line: str) -> str:
-        found = self.graded.standing.worths.get((cluster.question, line))
-        return found.id if found else ""
+        worth = self.graded.standing.worths.get((cluster.question, line))
+        return worth.id if worth else ""
 
 
 def _history(

@@ -120,14 +120,14 @@ class Jobs:
 
     def whole(self, results: Iterable[Result]) -> Iterator[tuple[int, list[Result]]]:
         """Iterate over each work's order and the results of its notebooks once all are there."""
-        found: dict[int, dict[int, Result]] = {}
+        by_work: dict[int, dict[int, Result]] = {}
         for result in results:
             order, part = map(int, text(result["id"], "'id'").split())
-            parts = found.setdefault(order, {})
+            parts = by_work.setdefault(order, {})
             parts[part] = result
             if len(parts) == len(self.work[order].notebooks):
-                yield order, [found[order][part] for part in range(len(parts))]
-                del found[order]
+                yield order, [by_work[order][part] for part in range(len(parts))]
+                del by_work[order]
 
 
 MARKING_ENDED = "The process that ran and judged it died repeatedly."

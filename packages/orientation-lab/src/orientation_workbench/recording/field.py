@@ -261,9 +261,9 @@ def uneven_lengths(means: Array) -> tuple[str, Array, Array, float]:
             true = (poses - offset) / scale
             slopes = np.concatenate([true[:, offsets], true[:, scales] ** 2], axis=1)
             slopes /= np.linalg.norm(true, axis=1, keepdims=True)
-            found = np.linalg.lstsq(slopes, np.linalg.norm(true, axis=1) - 1, rcond=1e-6)[0]
-            offset[offsets] += found[: offsets.sum()] * scale[offsets]
-            scale[scales] *= 1 + found[offsets.sum() :]
+            corrections = np.linalg.lstsq(slopes, np.linalg.norm(true, axis=1) - 1, rcond=1e-6)[0]
+            offset[offsets] += corrections[: offsets.sum()] * scale[offsets]
+            scale[scales] *= 1 + corrections[offsets.sum() :]
         return offset, scale
 
     best = ("Nothing", np.zeros(3), np.ones(3), float(np.std(np.linalg.norm(means, axis=1))))

@@ -290,11 +290,11 @@ def fit_axes(
 
 def carried(time: Array, rates: Array, poses: Sequence[Stretch]) -> Array:
     """Return rotations between the middles of poses, of shape ``(..., m - 1, 3, 3)``."""
-    found = []
+    rotations = []
     for pose, other in zip(poses, poses[1:], strict=False):
         part = slice((pose.first + pose.last) // 2, (other.first + other.last) // 2 + 1)
-        found.append(turned(rates[..., part, :], steps_of(time[part]))[..., -1, :, :])
-    return np.stack(found, axis=-3)
+        rotations.append(turned(rates[..., part, :], steps_of(time[part]))[..., -1, :, :])
+    return np.stack(rotations, axis=-3)
 
 
 class ScaleFit(NamedTuple):

@@ -439,16 +439,16 @@ def _table(
             broken.append(
                 f"line {line} has {number_of(len(row), 'column')} where the others have {width}"
             )
-        elif None in (found := values(row)):
-            column = numeric[found.index(None)]
+        elif None in (entries := values(row)):
+            column = numeric[entries.index(None)]
             broken.append(
                 f"line {line}, column {column + 1} ({columns[column]}): {row[column][:30]!r} is "
                 "not a number"
             )
-        elif inf in found or -inf in found:
+        elif inf in entries or -inf in entries:
             broken.append(f"line {line} contains an infinite number")
         else:
-            kept.append(found)
+            kept.append(entries)
     told = "; ".join(broken[:3]) + (f"; and {len(broken) - 3} more" if len(broken) > 3 else "")
     if len(broken) > max(2, MOST_BROKEN * (len(kept) + len(broken))):
         raise BrokenTable(
@@ -566,12 +566,12 @@ def _from_json(text: str, name: str) -> list[Table]:
 
 
 def _flat(entry: Mapping[str, object], before: str = "") -> dict[str, object]:
-    found: dict[str, object] = {}
+    flat: dict[str, object] = {}
     for key, value in entry.items():
         if isinstance(value, dict):
-            found |= _flat(value, f"{before}{key}.")
+            flat |= _flat(value, f"{before}{key}.")
         elif isinstance(value, (list, tuple)):
-            found |= {f"{before}{key}[{k}]": item for k, item in enumerate(value)}
+            flat |= {f"{before}{key}[{k}]": item for k, item in enumerate(value)}
         elif key != "sensor":
-            found[before + key] = value
-    return found
+            flat[before + key] = value
+    return flat

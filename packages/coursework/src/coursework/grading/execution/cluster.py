@@ -61,16 +61,16 @@ class Sandboxes(WorkerPlugin):
 def run_job(job: bytes, name: str) -> bytes:
     """Run one job on a worker; whatever happens, return JSON."""
     about: Job = json.loads(job)
-    found: dict[str, Json]
+    outcome: dict[str, Json]
     try:
         sandboxes = get_worker().plugins[name]
         assert isinstance(sandboxes, Sandboxes)
-        found = {"result": sandboxes.of_this_thread().run(about)}
+        outcome = {"result": sandboxes.of_this_thread().run(about)}
     except WorkerDied as error:
-        found = {"result": given_up(about, str(error))}
+        outcome = {"result": given_up(about, str(error))}
     except WeakIsolation as error:
-        found = {"weak": str(error)}
-    return json.dumps({**found, "software": software()}).encode()
+        outcome = {"weak": str(error)}
+    return json.dumps({**outcome, "software": software()}).encode()
 
 
 class _PlainData(pickle.Unpickler):

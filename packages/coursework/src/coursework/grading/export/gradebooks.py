@@ -267,15 +267,15 @@ def _split(text: str, delimiter: str) -> list[tuple[list[Field], str]]:
     lines: list[tuple[list[Field], str]] = []
     fields: list[Field] = []
     place = 0
-    while found := pattern.match(text, place) if place < len(text) else None:
-        written, end = found.groups()
+    while match := pattern.match(text, place) if place < len(text) else None:
+        written, end = match.groups()
         says = (
             written[1 : written.rindex('"')].replace('""', '"')
             if written.startswith('"') and len(written) > 1
             else written
         )
         fields.append(Field(says, written))
-        place = found.end()
+        place = match.end()
         if end != delimiter:
             lines.append((fields, end))
             fields = []

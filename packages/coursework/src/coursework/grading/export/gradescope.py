@@ -127,14 +127,14 @@ def requirements() -> list[str]:
 
     of_packages = metadata.packages_distributions()
     ours = {name for package in folders() for name in of_packages.get(package.name, ())}
-    found: dict[str, str] = {}
+    versions: dict[str, str] = {}
     waiting = deque((name, frozenset({"", "tools"})) for name in ours)
     seen = set(waiting)
     while waiting:
         name, extras = waiting.popleft()
         distribution = metadata.distribution(name)
         if name not in ours:
-            found[distribution.name.lower()] = distribution.version
+            versions[distribution.name.lower()] = distribution.version
         for line in distribution.requires or ():
             requirement = Requirement(line)
             if not any(
@@ -146,7 +146,7 @@ def requirements() -> list[str]:
             if named not in seen:
                 seen.add(named)
                 waiting.append(named)
-    return [f"{name}=={version}" for name, version in sorted(found.items())]
+    return [f"{name}=={version}" for name, version in sorted(versions.items())]
 
 
 # --- the code that runs there -------------------------------------------------------------------
@@ -187,15 +187,15 @@ def run(home: Path = HOME) -> None:
     student = user.email
     results = home / "results" / "results.json"
     if term.roster:
-        found, why = term.roster.find(
+        known_student, why = term.roster.find(
             (("email", user.email), ("own", user.email), ("name", user.name))
         )
-        if found is None:
+        if known_student is None:
             return _say(
                 results,
                 f"We cannot find you on this course's list. {why} Ask your instructor.",
             )
-        student = found
+        student = known_student
     with tempfile.TemporaryDirectory() as out:
         Path(out, "questions").symlink_to(home / "questions")
         for name in {FILE, ROSTER} & set(os.listdir(source)):

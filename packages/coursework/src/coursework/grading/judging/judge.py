@@ -78,29 +78,29 @@ class Judge:
         if self.of != os.getpid():
             # A forked copy of this process needs a judge of its own.
             self.process, self.of = None, os.getpid()
-        found: dict[str, Mark] = {}
+        marks: dict[str, Mark] = {}
         while True:
             _, judge = self.process = self.process or self._begin()
             begun = ""
             try:
-                _say(judge, {"record": record.as_json(), "without": list(found)})
+                _say(judge, {"record": record.as_json(), "without": list(marks)})
                 while "end" not in (said := _hear(judge, LONGEST_SILENCE)):
                     if "error" in said:
                         raise ValueError(said["error"])
                     if "fault" in said:
                         raise RuntimeError(said["fault"])
                     if "mark" in said:
-                        found[begun] = Mark.from_json(said["mark"], begun)
+                        marks[begun] = Mark.from_json(said["mark"], begun)
                     else:
                         begun = said["begin"]
-                return found
+                return marks
             except (EOFError, OSError):
                 self.end()
-                if not begun or begun in found:
+                if not begun or begun in marks:
                     raise RuntimeError(
                         "The judging process ended while no answer was being judged."
                     ) from None
-                found[begun] = self._stopped(record, begun)
+                marks[begun] = self._stopped(record, begun)
 
     def _stopped(self, record: Record, name: str) -> Mark:
         self.log(
@@ -164,10 +164,10 @@ class Judge:
                 if name not in without:
                     yield {"begin": name}
                     _limit_time()
-                    found = marking.mark_with_siblings(
+                    mark = marking.mark_with_siblings(
                         name, question, record.answers, record.remembered, record.finished, limited
                     )
-                    yield {"mark": found.as_json()}
+                    yield {"mark": mark.as_json()}
             yield {"end": True}
         except ValueError as error:
             yield {"error": str(error)}

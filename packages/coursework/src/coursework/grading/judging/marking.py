@@ -470,23 +470,25 @@ def mark_with_siblings(
     return found
 
 
-def _by_a_sibling(contract: Contract, found: Mark, sibling: str) -> Mark:
+def _by_a_sibling(contract: Contract, mark_of_sibling: Mark, sibling: str) -> Mark:
     """Return the mark of a question after its student solved a sibling without help.
 
     It restores the points that help cost. If the question itself was not answered correctly, we
     cannot know whose numbers were solved, and each sibling would give a friend's answer one more
     chance, so a person decides.
     """
-    if found.outcome == "correct":
+    if mark_of_sibling.outcome == "correct":
         said = f"You solved `{sibling}` without help, so it counts for this question."
-        return replace(found, note="by a sibling", points=contract.worth, messages=(said,))
+        return replace(
+            mark_of_sibling, note="by a sibling", points=contract.worth, messages=(said,)
+        )
     said = (
         f"You solved `{sibling}` without help, but not the question itself, so your instructor "
         "will decide."
     )
-    messages = (*found.messages, said)
+    messages = (*mark_of_sibling.messages, said)
     return replace(
-        found, outcome="undecided", note="by a sibling alone", points=0, messages=messages
+        mark_of_sibling, outcome="undecided", note="by a sibling alone", points=0, messages=messages
     )
 
 

@@ -203,13 +203,13 @@ def _another_list(values: list[list[Any]], dice: random.Random) -> list[Any]:
     if length == 3 and all(map(_is_rotation, values)):
         return _rotation(dice)
     if length in (2, 3, 4) and all(map(_is_unit, values)):
-        found = _unit(length, dice)
+        vector = _unit(length, dice)
         # A question may ask for quaternions whose scalar is not negative.
-        return [abs(found[0]), *found[1:]] if all(value[0] >= 0 for value in values) else found
-    found = [_another([value[place] for value in values], dice) for place in range(length)]
-    if length > 1 and all(map(_increases, values)) and _increases(sorted(found)):
-        return sorted(found)
-    return found
+        return [abs(vector[0]), *vector[1:]] if all(value[0] >= 0 for value in values) else vector
+    vector = [_another([value[place] for value in values], dice) for place in range(length)]
+    if length > 1 and all(map(_increases, values)) and _increases(sorted(vector)):
+        return sorted(vector)
+    return vector
 
 
 def _moved(value: Any, dice: random.Random) -> Any:
@@ -245,9 +245,9 @@ def _increases(value: Any) -> bool:
 
 
 def _unit(length: int, dice: random.Random) -> list[float]:
-    found = [dice.gauss(0, 1) for _ in range(length)]
-    size = math.hypot(*found)
-    return [part / size for part in found]
+    vector = [dice.gauss(0, 1) for _ in range(length)]
+    size = math.hypot(*vector)
+    return [part / size for part in vector]
 
 
 def _rotation(dice: random.Random) -> list[list[float]]:

@@ -301,8 +301,8 @@ class _File:
         section, _, key = where.rpartition(".")
         now, number = "", 0
         for line_number, line in enumerate(self.text.splitlines(), 1):
-            if found := re.match(r"\s*\[+\s*([^]]*?)\s*\]", line):
-                now = found[1].replace('"', "").replace(" ", "")
+            if match := re.match(r"\s*\[+\s*([^]]*?)\s*\]", line):
+                now = match[1].replace('"', "").replace(" ", "")
                 if now == where:
                     number = number or line_number
             elif now == section and re.match(rf"\s*[\"']?{re.escape(key)}[\"']?\s*=", line):
@@ -654,7 +654,7 @@ def delay(
 
 def _times(path: Path, zone: datetime.tzinfo) -> Times:
     """Read a system's table."""
-    found: dict[str, datetime.datetime] = {}
+    times: dict[str, datetime.datetime] = {}
     roster = Roster(path)
     for student, person in roster.people.items():
         row = person.row
@@ -673,8 +673,8 @@ def _times(path: Path, zone: datetime.tzinfo) -> Times:
                 "like 2026-10-06 20:01, or set your system to English and download the table "
                 "again."
             )
-        found[student] = in_zone(datetime.datetime.fromisoformat(when), zone, later=False)
-    return Times(roster, found)
+        times[student] = in_zone(datetime.datetime.fromisoformat(when), zone, later=False)
+    return Times(roster, times)
 
 
 # --- the results --------------------------------------------------------------------------------
@@ -869,9 +869,9 @@ def _handed_in(
             if kind in called
         ]
         keys += [("own", own) for own in (*(record.identity.own or ()), student)]
-        found, _ = about.times.roster.find(keys)
-        if found is not None and found in about.times.times:
-            return about.times.times[found]
+        known_student, _ = about.times.roster.find(keys)
+        if known_student is not None and known_student in about.times.times:
+            return about.times.times[known_student]
     moments = (
         in_zone(datetime.datetime.fromisoformat(moment), zone, later=False)
         for moment in [notebook.handed_in for notebook in record.notebooks]

@@ -173,16 +173,16 @@ def _write_student(
 
 def _write_questions(folder: Path, statistics: Statistics, name: str) -> None:
     assignments: dict[str, list[dict[str, object]]] = {}
-    for (assignment, question), found in statistics.questions.items():
+    for (assignment, question), statistic in statistics.questions.items():
         place = f"answers/{file_name(assignment + ' ' + question)}.html"
-        groups, anchors = _groups(found, assignment)
+        groups, anchors = _groups(statistic, assignment)
         write(
             folder / place,
-            page("answers.html", found=found, question=question, groups=groups, words=OUTCOMES),
+            page("answers.html", found=statistic, question=question, groups=groups, words=OUTCOMES),
             lasting=False,
         )
         assignments.setdefault(assignment, []).append(
-            {"found": found, "page": place, "anchors": anchors}
+            {"found": statistic, "page": place, "anchors": anchors}
         )
     content = page(
         "statistics.html",
@@ -192,11 +192,11 @@ def _write_questions(folder: Path, statistics: Statistics, name: str) -> None:
     write(folder / "statistics.html", content)
 
 
-def _groups(found: Question, assignment: str) -> tuple[list[dict[str, object]], dict[str, str]]:
+def _groups(question: Question, assignment: str) -> tuple[list[dict[str, object]], dict[str, str]]:
     """Group the answers to a question by outcome and mistake, the most frequent first."""
     groups: dict[tuple[str, str], list[Same]] = {}
     anchors: dict[str, str] = {}
-    for (outcome, did, _), same in found.answers.items():
+    for (outcome, did, _), same in question.answers.items():
         groups.setdefault((outcome, did), []).append(same)
     order = list(OUTCOMES)
     made: list[dict[str, object]] = []

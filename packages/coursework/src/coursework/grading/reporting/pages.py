@@ -122,18 +122,18 @@ def formula(source: str, longest: int = 300) -> str:
     try:
         if len(source) > longest:
             raise ValueError
-        found = convert(source)
+        mathml = convert(source)
         # A message may contain a student's words, so let only elements of formulas through.
-        for element in ElementTree.fromstring(found).iter():
+        for element in ElementTree.fromstring(mathml).iter():
             name = element.tag.rpartition("}")[2]
             if name not in MATHEMATICS or not set(element.attrib) <= ATTRIBUTES:
                 raise ValueError
-        return found
+        return mathml
     except Exception:
         return f"<code>{text(source)}</code>"
 
 
 def answer_as_mathematics(plain: Plain | None) -> str:
     """Return the MathML of a plain answer, or an empty string if it is shown as text only."""
-    found = formula(answer_as_tex(plain), LONGEST) if plain else ""
-    return found if found.startswith("<math") else ""
+    mathml = formula(answer_as_tex(plain), LONGEST) if plain else ""
+    return mathml if mathml.startswith("<math") else ""

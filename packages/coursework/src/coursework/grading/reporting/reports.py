@@ -335,12 +335,13 @@ def _deeds() -> dict[str, str]:
 
 def report(classes: Mapping[str, _Assignment], refused: Sequence[Refused]) -> str:
     """Return the page on the class."""
-    ways = sum((found.ways for found in classes.values()), Counter())
-    versions = sum((found.versions for found in classes.values()), Counter())
+    ways = sum((assignment.ways for assignment in classes.values()), Counter())
+    versions = sum((assignment.versions for assignment in classes.values()), Counter())
     return page(
         "report.html",
         classes=[
-            (name, file_name(name), found, _about(found)) for name, found in sorted(classes.items())
+            (name, file_name(name), assignment, _about(assignment))
+            for name, assignment in sorted(classes.items())
         ],
         refused=refused,
         ways=sorted(ways.items()),
@@ -350,20 +351,20 @@ def report(classes: Mapping[str, _Assignment], refused: Sequence[Refused]) -> st
     )
 
 
-def _about(found: _Assignment) -> dict[str, object]:
+def _about(assignment: _Assignment) -> dict[str, object]:
     """Return the computed values that the report shows for an assignment."""
-    points = list(found.points.elements())
+    points = list(assignment.points.elements())
     return {
         "mean": f"{mean(points):.1f}",
         "median": median(points),
-        "bars": _histogram(found.points, found.worth),
+        "bars": _histogram(assignment.points, assignment.worth),
         "success": [
-            (*_success(name, counts), _tries(found.tries.get(name)))
-            for name, counts in found.parts.items()
+            (*_success(name, counts), _tries(assignment.tries.get(name)))
+            for name, counts in assignment.parts.items()
         ],
-        "mixups": _mixups(found),
-        "same": _same(found),
-        "odd": sorted(found.odd.items()),
+        "mixups": _mixups(assignment),
+        "same": _same(assignment),
+        "odd": sorted(assignment.odd.items()),
     }
 
 
@@ -437,23 +438,24 @@ def _percent(part: int, whole: int) -> str:
     return f"{share:.0f} %" if share >= 1 or not part else "under 1 %"
 
 
-def _mixups(found: _Assignment) -> list[tuple[str, str, int, str, float]]:
+def _mixups(assignment: _Assignment) -> list[tuple[str, str, int, str, float]]:
     shown = sorted(
-        found.mixups.items(), key=lambda entry: (-entry[1], found.numbers[entry[0][0]], entry[0][1])
+        assignment.mixups.items(),
+        key=lambda entry: (-entry[1], assignment.numbers[entry[0][0]], entry[0][1]),
     )[:20]
     return [
-        (name, what, count, _percent(count, found.students), 120 * count / found.students)
+        (name, what, count, _percent(count, assignment.students), 120 * count / assignment.students)
         for (name, what), count in shown
-        if count > 1 or found.students < 30
+        if count > 1 or assignment.students < 30
     ]
 
 
-def _same(found: _Assignment) -> list[tuple[str, int, str]]:
+def _same(assignment: _Assignment) -> list[tuple[str, int, str]]:
     shown = sorted(
-        (entry for entry in found.same.items() if entry[1] > 1),
-        key=lambda entry: (-entry[1], found.numbers[entry[0][0]], entry[0][1]),
+        (entry for entry in assignment.same.items() if entry[1] > 1),
+        key=lambda entry: (-entry[1], assignment.numbers[entry[0][0]], entry[0][1]),
     )[:15]
-    return [(key[0], students, found.examples[key]) for key, students in shown]
+    return [(key[0], students, assignment.examples[key]) for key, students in shown]
 
 
 def _oddities(record: Record) -> dict[str, None]:

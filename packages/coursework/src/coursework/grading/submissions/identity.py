@@ -142,7 +142,7 @@ class Layout:
         if self.kind == "blackboard":
             # The assignment's name comes first and is the same in all names.
             self.prefix = _shared(
-                {found["who"] for top in tops if (found := BLACKBOARD.fullmatch(top))}, "_"
+                {match["who"] for top in tops if (match := BLACKBOARD.fullmatch(top))}, "_"
             )
         elif self.kind == "own" and 2 * len(set(tops) & self._inside(repositories)) > len(
             set(tops)
@@ -199,10 +199,10 @@ class Layout:
         parts = parts[len(self.enclosing) :]
         read, pattern = getattr(self, f"_{self.kind}"), PATTERNS.get(self.kind)
         match = pattern.fullmatch(parts[0]) if pattern else None
-        found: Claim | None = (match and read(parts, match)) if pattern else read(parts)
-        if found and self.student is not None and self.kind == "own":
-            found = found._replace(source=f"all of {self.student}", file="/".join(parts))
-        return found and found._replace(place=parts[0])
+        claim: Claim | None = (match and read(parts, match)) if pattern else read(parts)
+        if claim and self.student is not None and self.kind == "own":
+            claim = claim._replace(source=f"all of {self.student}", file="/".join(parts))
+        return claim and claim._replace(place=parts[0])
 
     def is_beside_submissions(self, name: str) -> bool:
         """Check whether a file is in one of nbgrader's folders beside ``submitted``."""
@@ -218,22 +218,22 @@ class Layout:
     # system have one pattern, its method also receives the match.
 
     def _canvas(self, parts: Parts) -> Claim | None:
-        kind, found = self._read_as_canvas(parts[0])
-        if not found:
+        kind, match = self._read_as_canvas(parts[0])
+        if not match:
             return None
-        again = RESUBMITTED.fullmatch(PurePosixPath(found["file"]).stem)
+        again = RESUBMITTED.fullmatch(PurePosixPath(match["file"]).stem)
         number = int(again["number"]) if again else 0
-        name = "anonymous" if kind == "canvas anonymous" else _clean(found["name"])
-        keys = ((kind, found["user"]),) + ((("letters", name),) if kind == "canvas" else ())
+        name = "anonymous" if kind == "canvas anonymous" else _clean(match["name"])
+        keys = ((kind, match["user"]),) + ((("letters", name),) if kind == "canvas" else ())
         return Claim(
-            f"{name}_{found['user']}",
+            f"{name}_{match['user']}",
             keys,
-            f"{kind} {found['user']}" + (f" {name}" if kind == "canvas" else ""),
-            _inside(parts, found["file"]),
+            f"{kind} {match['user']}" + (f" {name}" if kind == "canvas" else ""),
+            _inside(parts, match["file"]),
             (number,),
-            bool(found["late"]),
+            bool(match["late"]),
             True,
-            reply=_before_the_file(found),
+            reply=_before_the_file(match),
         )
 
     def _read_as_canvas(self, name: str) -> tuple[str, re.Match[str] | None]:
@@ -242,18 +242,18 @@ class Layout:
         if anonymous:
             return "canvas anonymous", anonymous
         readings = [
-            found for found in (CANVAS.fullmatch(name), CANVAS_NUMBERED.fullmatch(name)) if found
+            match for match in (CANVAS.fullmatch(name), CANVAS_NUMBERED.fullmatch(name)) if match
         ]
         roster = self.roster
         people = [
-            roster.find((("canvas", found["user"]),))[0] if roster else None for found in readings
+            roster.find((("canvas", match["user"]),))[0] if roster else None for match in readings
         ]
         if roster and len(readings) == 2 and people[1] is not None:
             readings = [
-                found
-                for found, student in zip(readings, people, strict=True)
+                match
+                for match, student in zip(readings, people, strict=True)
                 if student is not None
-                and roster.find((("letters", _clean(found["name"])),))[0] == student
+                and roster.find((("letters", _clean(match["name"])),))[0] == student
             ]
             return ("canvas", readings[0]) if len(readings) == 1 else ("canvas", None)
         return "canvas", readings[0] if readings else None
@@ -278,21 +278,21 @@ class Layout:
             others=tuple(others),
         )
 
-    def _moodle(self, parts: Parts, found: re.Match[str]) -> Claim:
-        name, user = _clean(found["name"]), found["user"]
+    def _moodle(self, parts: Parts, match: re.Match[str]) -> Claim:
+        name, user = _clean(match["name"]), match["user"]
         return Claim(
             f"{name} {user}",
             (("moodle", user), ("name", name)),
             f"moodle {user} {name}",
-            _inside(parts, found["file"]),
+            _inside(parts, match["file"]),
             given_by_system=True,
-            reply=_before_the_file(found) if found["file"] else f"{parts[0]}/",
+            reply=_before_the_file(match) if match["file"] else f"{parts[0]}/",
         )
 
-    def _brightspace(self, parts: Parts, found: re.Match[str]) -> Claim:
-        name, user = _clean(found["name"]), found["user"]
+    def _brightspace(self, parts: Parts, match: re.Match[str]) -> Claim:
+        name, user = _clean(match["name"]), match["user"]
         keys = (("brightspace", user), ("name", name))
-        when = _when(found["when"])
+        when = _when(match["when"])
         return Claim(
             f"{name} {user}",
             keys,
@@ -304,18 +304,18 @@ class Layout:
             reply=f"{parts[0]}/",
         )
 
-    def _blackboard(self, parts: Parts, found: re.Match[str]) -> Claim:
-        user = self._blackboard_user(found["who"])
-        when = tuple(map(int, found["when"].split("-")))
+    def _blackboard(self, parts: Parts, match: re.Match[str]) -> Claim:
+        user = self._blackboard_user(match["who"])
+        when = tuple(map(int, match["when"].split("-")))
         return Claim(
             _clean(user),
             (("own", user),),
             f"blackboard {user}",
-            _inside(parts, found["file"]),
+            _inside(parts, match["file"]),
             when,
             given_by_system=True,
             handed_in=_as_time(when),
-            reply=_before_the_file(found) if found["file"] else f"{PurePosixPath(parts[0]).stem}_",
+            reply=_before_the_file(match) if match["file"] else f"{PurePosixPath(parts[0]).stem}_",
         )
 
     def _blackboard_user(self, who: str) -> str:
@@ -374,9 +374,9 @@ def _as_time(numbers: tuple[int, ...]) -> str:
         return ""
 
 
-def _before_the_file(found: re.Match[str]) -> str:
+def _before_the_file(match: re.Match[str]) -> str:
     """Return the part of a name that the system wrote, before the student's name of the file."""
-    return found.string[: found.start("file")]
+    return match.string[: match.start("file")]
 
 
 def _inside(parts: Parts, first: str | None = None) -> str:

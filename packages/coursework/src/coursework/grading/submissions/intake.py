@@ -249,7 +249,7 @@ def take_in(
     notebooks : list of Notebook
     refused : list of Refused
     """
-    found: list[Notebook] = []
+    candidates: list[Notebook] = []
     refused: list[Refused] = []
     files: list[Found] = []
     repositories: set[str] = set()
@@ -272,10 +272,10 @@ def take_in(
     for name, when, read in files:
         if name.lower().endswith(".zip"):
             for inner, data in _inside_archive(name, read, refused):
-                _take(found, others, refused, layout, ADDED.sub("", inner), when, data, name)
+                _take(candidates, others, refused, layout, ADDED.sub("", inner), when, data, name)
         else:
-            _take(found, others, refused, layout, name, when, read, name)
-    have = {notebook.claim.source for notebook in found}
+            _take(candidates, others, refused, layout, name, when, read, name)
+    have = {notebook.claim.source for notebook in candidates}
     # Moodle numbers the participants of each assignment anew. A number that matches nobody, beside
     # others that match, belongs to somebody who is not in the roster.
     numbered_anew = roster is not None and not any(
@@ -284,7 +284,7 @@ def take_in(
         for key in (claim.keys if claim else ())
     )
     notebooks: list[Notebook] = []
-    for submitted in found:
+    for submitted in candidates:
         if notebook := _with_student(submitted, roster, student, refused, numbered_anew):
             beside, handed_in = _beside(notebook, others), _when(notebook, others, layout)
             notebooks.append(notebook._replace(beside=beside, handed_in=handed_in))
@@ -371,7 +371,7 @@ def as_time(text: str) -> str | None:
 
 
 def _take(
-    found: list[Notebook],
+    candidates: list[Notebook],
     others: Others,
     refused: list[Refused],
     layout: Layout,
@@ -401,7 +401,7 @@ def _take(
     named = sorted(
         {*(checked for cell in cells for checked in CHECK.findall(cell["source"])), *grade_ids}
     )
-    found.append(
+    candidates.append(
         Notebook(
             name,
             claim.student,
@@ -423,10 +423,10 @@ def _take(
 def _says(cells: Iterable[CodeCell]) -> str:
     """Return the student that a notebook names last; empty if it names none."""
     said = [
-        found["who"]
+        match["who"]
         for cell in cells
-        for found in SAYS.finditer(cell["source"])
-        if found["who"].strip()
+        for match in SAYS.finditer(cell["source"])
+        if match["who"].strip()
     ]
     return said[-1] if said else ""
 
@@ -456,15 +456,15 @@ def _with_student(
     if roster is None:
         identity = Identity(known if notebook.claim.given_by_system else {})
         return notebook._replace(matched="as its name or folder says", identity=identity)
-    found, how = roster.find(notebook.claim.keys, notebook.claim.place, numbered_anew)
-    if found is None:
+    owner, how = roster.find(notebook.claim.keys, notebook.claim.place, numbered_anew)
+    if owner is None:
         refused.append(
             Refused(notebook.file, notebook.claim.student, f"{how} Whose is it? {NOT_MATCHED}")
         )
         return None
-    identity = roster.identity(found)
+    identity = roster.identity(owner)
     return notebook._replace(
-        student=found,
+        student=owner,
         matched=how,
         identity=Identity(
             {
@@ -529,7 +529,7 @@ def _numbers(claim: Claim) -> list[tuple[str, str]]:
 
 def _beside(notebook: Notebook, others: Others) -> tuple[Beside, ...]:
     """Return the files in the notebook's folder or below, by the names that its code would use."""
-    found: list[Beside] = []
+    files: list[Beside] = []
     folder, total = PurePosixPath(notebook.claim.file).parent, 0
     for claim, _, read in others.get(notebook.claim.source, ()):
         name = PurePosixPath(claim.file if claim else "")
@@ -540,19 +540,19 @@ def _beside(notebook: Notebook, others: Others) -> tuple[Beside, ...]:
         except Unfit:
             continue
         total += len(data)
-        if len(found) >= MOST_BESIDE or total > MOST_BYTES_BESIDE:
+        if len(files) >= MOST_BESIDE or total > MOST_BYTES_BESIDE:
             break
-        found.append(Beside(str(name.relative_to(folder)), hashlib.sha256(data).hexdigest(), read))
+        files.append(Beside(str(name.relative_to(folder)), hashlib.sha256(data).hexdigest(), read))
     if notebook.claim.source.startswith("canvas "):
-        found += _as_named_before(found)
-    return tuple(sorted(found))
+        files += _as_named_before(files)
+    return tuple(sorted(files))
 
 
-def _as_named_before(found: Sequence[Beside]) -> list[Beside]:
+def _as_named_before(files: Sequence[Beside]) -> list[Beside]:
     """List files that Canvas renamed on resubmission by their old names, which the code uses."""
     numbered: dict[str, list[tuple[int, Beside]]] = {}
-    names = {file.name for file in found}
-    for file in found:
+    names = {file.name for file in files}
+    for file in files:
         path = PurePosixPath(file.name)
         again = RESUBMITTED.fullmatch(path.stem)
         if again and (bare := str(path.with_name(again["stem"] + path.suffix))) not in names:
@@ -869,9 +869,9 @@ def remembered_in(data: bytes) -> dict[str, Remembered]:
 
     Students can change it, and we do not notice if they delete it.
     """
-    found: dict[str, Remembered] = {}
+    remembered: dict[str, Remembered] = {}
     if b"coursework-reply" not in data:
-        return found
+        return remembered
     # The quotes are escaped inside JSON strings.
     text = data.decode("utf8", "replace").replace('\\"', '"')
     for reply in REPLY.findall(text):
@@ -879,15 +879,15 @@ def remembered_in(data: bytes) -> dict[str, Remembered]:
         if (
             not {"question", "tries"} <= set(about)
             or not about["tries"].isdecimal()
-            or len(found) >= MOST_CELLS
+            or len(remembered) >= MOST_CELLS
         ):
             continue
-        earlier = found.get(about["question"], Remembered())
-        found[about["question"]] = Remembered(
+        earlier = remembered.get(about["question"], Remembered())
+        remembered[about["question"]] = Remembered(
             max(earlier.tries, int(about["tries"][:6])),
             about.get("help", earlier.help),
         )
-    return found
+    return remembered
 
 
 def pictures_in(data: bytes) -> dict[str, list[str]]:
@@ -896,7 +896,7 @@ def pictures_in(data: bytes) -> dict[str, list[str]]:
     Students can change them, and only people look at them. What is not a complete picture is left
     out.
     """
-    found: dict[str, list[str]] = {}
+    pictures: dict[str, list[str]] = {}
     left = MOST_BYTES_OF_PICTURES
     for number, shown in outputs_in(data):
         for kind in (PNG, JPEG):
@@ -904,9 +904,9 @@ def pictures_in(data: bytes) -> dict[str, list[str]]:
                 picture = "".join(_source(shown.get(kind, "")).split())
                 if picture and len(picture) <= left:
                     if is_picture(kind, base64.b64decode(picture, validate=True)):
-                        found.setdefault(str(number), []).append(f"{kind};base64,{picture}")
+                        pictures.setdefault(str(number), []).append(f"{kind};base64,{picture}")
                         left -= len(picture)
-    return found
+    return pictures
 
 
 def outputs_in(data: bytes) -> Iterator[tuple[int, dict[str, object]]]:

@@ -168,14 +168,14 @@ class Roster:
                 # The roster has the system's IDs, so a name must not overrule one that matches
                 # nobody.
                 break
-            found = self.index.get((kind, _same(kind, value)), set())
-            if len(found) == 1:
-                return next(iter(found)), WORDS[kind]
-            if len({self.group_of.get(name, name) for name in found}) == 1:
-                return self.group_of[min(found)], WORDS[kind]
-            if found:
+            students = self.index.get((kind, _same(kind, value)), set())
+            if len(students) == 1:
+                return next(iter(students)), WORDS[kind]
+            if len({self.group_of.get(name, name) for name in students}) == 1:
+                return self.group_of[min(students)], WORDS[kind]
+            if students:
                 return None, (
-                    f"Several students in the roster match: {', '.join(sorted(found))}. If they "
+                    f"Several students in the roster match: {', '.join(sorted(students))}. If they "
                     "work together, list them under [groups] in term.toml."
                 )
             if kind in self.kinds and (
