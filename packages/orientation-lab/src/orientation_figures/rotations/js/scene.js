@@ -243,7 +243,7 @@ export const CABLE = { wall: 2.05, start: 0.5 };
 export const axisOf = (start) => axisAngleFromDcm(frames(start).D);
 
 // The position of the eye where it differs from the usual one.
-export const EYES = { 'not-home': [8, 24], 'two-mirrors': [25, 35], 'between-poses': [64, 50] };
+export const EYES = { 'not-home': [8, 24], 'two-mirrors': [25, 35], 'between-poses': [64, 50], lock: [52, 40] };
 
 // The course of the angles and the rest at a moment of a stop; start: the pose in which the stop was entered.
 export const COURSE = {
