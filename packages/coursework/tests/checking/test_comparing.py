@@ -60,10 +60,10 @@ LOCKERS = {
     text_of(EXACT, [x, 0.4714, 5], near=True): Locker(),
 }
 DECIMALS = (
-    "Your answer has decimal fractions, but the question asks for an exact one: write "
-    "numbers such as `sm.Rational(1, 2)` and `sm.sqrt(3)`."
+    "Your answer has decimal fractions. Write symbols or exact numbers instead, such as "
+    "`sm.Rational(1, 2)` and `sm.sqrt(3)`."
 )
-NEARLY = "This agrees with the right answer to about three digits."
+NEARLY = "This agrees with the right answer to three digits or more."
 BLANK = "Put your answer in place of the `...` and run the cells again."
 STRAY = "The answer contains `y`, but this question has the symbol `x`."
 ALL_WRONG = questions.kind_of_values(EXACT).wrong
@@ -209,8 +209,10 @@ def test_numbers_with_fewer_places_than_count_may_be_rounded():
             f"answer may be off by at most {allowed}. {FORM}"
         )
     assert {reply_to(vector, {}, [entry, sm.Rational(1, 3)])[2] for entry in enough} == {ALL_WRONG}
-    # Nobody has rounded the components of an exact vector.
-    assert {reply_to(vector, {}, exact)[2] for exact in ([0.6, -0.8], [3.6, 4.8])} == {ALL_WRONG}
+    # Nobody has rounded the components of an exact vector, or one of two numbers.
+    assert {
+        reply_to(vector, {}, exact)[2] for exact in ([0.6, -0.8], [3.6, 4.8], [1.2, -1.0478969291])
+    } == {ALL_WRONG}
 
 
 def test_numbers_that_nearly_fit_together_may_be_rounded():

@@ -237,10 +237,15 @@ OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
             FUNCTION,
             returned(FIRST, ["blank"]),
             "returned nothing",
-            "In call 2 of 2 the function re",
+            "In call 2 of 2, with `2`, the function re",
         ),
         (FUNCTION, returned(FIRST, ["printed", "1"]), "printed", "The function prints its result"),
-        (FUNCTION, returned(["raised", "E: e"], FIRST), "raised an error", "In call 1 of 2 the"),
+        (
+            FUNCTION,
+            returned(["raised", "E: e"], FIRST),
+            "raised an error",
+            "In call 1 of 2, with `1`,",
+        ),
         (FUNCTION, returned(["raised", "E: e"], FIRST), "raised an error", "raised `E: e`."),
         (
             FUNCTION,
@@ -258,7 +263,7 @@ OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
             FUNCTION,
             returned(FIRST, ["truth", True]),
             "shape",
-            "In call 2 of 2 the function did not return what the question asks for. "
+            "In call 2 of 2, with `2`, the function did not return what the question asks for. "
             "Give a single expression; this is a Boolean.",
         ),
         (

@@ -79,7 +79,8 @@ MESSAGES: dict[str, Callable[..., str]] = {
         "You gave the complementary angle: yours and the right one add up to a quarter turn."
     ),
     "not turned": lambda question: (
-        "These are the components along the initial frame. Convert them to the other frame."
+        "These are the components along the frame in which you know the vector. Convert them to "
+        "the other frame."
     ),
     "turned the wrong way": lambda question: (
         "You multiplied the components by the transpose of the right matrix."

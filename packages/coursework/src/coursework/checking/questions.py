@@ -525,7 +525,7 @@ def _not_known(
             name,
             "wrong",
             "rounded too far",
-            ["This agrees with the right answer to about three digits.", decimals],
+            ["This agrees with the right answer to three digits or more.", decimals],
         )
     for slip, why, turned in () if rounded else other_readings(question, reading):
         known = _known_in(question, turned, find(fingerprint(question, turned)))
@@ -572,8 +572,8 @@ def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
     if not exact or not any(node[0] == "float" for node in plain["nodes"]):
         return ""
     return (
-        "Your answer has decimal fractions, but the question asks for an exact one: write numbers "
-        "such as `sm.Rational(1, 2)` and `sm.sqrt(3)`."
+        "Your answer has decimal fractions. Write symbols or exact numbers instead, such as "
+        "`sm.Rational(1, 2)` and `sm.sqrt(3)`."
     )
 
 
@@ -581,7 +581,8 @@ def _few_digits(question: Question, plain: Plain) -> str:
     """Return a message on numbers with fewer decimals than the tolerance: they may be rounded.
 
     It depends only on the student's input and the tolerance, so it reveals nothing of the right
-    answer. Components that make an exact length together, such as 0.6 and 0.8, are exact.
+    answer. Components that make an exact length together, such as 0.6 and 0.8, are exact, and so
+    is 2.4 beside a number with all its digits.
     """
     if question.tolerance is None:
         return ""
@@ -594,7 +595,10 @@ def _few_digits(question: Question, plain: Plain) -> str:
         sum(squares, Fraction()),
         *(first + second for first, second in itertools.combinations(squares, 2)),
     ]
-    if len(squares) > 1 and any(map(_is_square, lengths)):
+    # A number with nine decimal places or more was not rounded by hand.
+    if any(len(digits.partition(".")[2]) > 8 for digits in floats) or (
+        len(squares) > 1 and any(map(_is_square, lengths))
+    ):
         return ""
     for digits in floats:
         places = len(digits.partition(".")[2])

@@ -310,7 +310,15 @@ def _read_function(question: Question, plain: Plain) -> Reading:
     results = values(plain["nodes"], {})
     numbers = []
     for order, result in enumerate(returned):
-        which = f"In call {order + 1} of {len(returned)} the function"
+        arguments = ", ".join(
+            repr(part) for call in question.calls[order : order + 1] for part in call
+        )
+        # Arguments of more than a line, such as a log, would hide what went wrong.
+        which = (
+            f"In call {order + 1} of {len(returned)}"
+            + (f", with `{arguments}`," if 0 < len(arguments) <= 60 else "")
+            + " the function"
+        )
         if result[0] == "raised":
             raise Fault("raised an error", f"{which} raised `{text_of(result)}`.")
         if is_blank(result):

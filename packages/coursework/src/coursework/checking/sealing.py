@@ -231,9 +231,8 @@ def unseal(sealed: str, key: bytes) -> Any:
     hidden, tag = data[:-PAGE_TAG], data[-PAGE_TAG:]
     if not hmac.compare_digest(tag, _tag(hidden, key, "page")[:PAGE_TAG]):
         raise ValueError("The sealed data does not match this key, or has been changed.")
-    data = _mask(hidden, key, "page")
-    # The rest is padding.
-    return json.loads(zlib.decompress(data[4:]))
+    # The first four bytes are the length, and what follows the data is padding.
+    return json.loads(zlib.decompress(_mask(hidden, key, "page")[4:]))
 
 
 def shorten(text: str, words: str) -> str:
