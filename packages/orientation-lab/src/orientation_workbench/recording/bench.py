@@ -463,7 +463,7 @@ class _Bench:
             self.say(
                 "scale of the gyroscope",
                 UNKNOWN,
-                f"{number_of(len(poses), 'still pose')}: "
+                f"{number_of(len(poses), 'nearly still pose')}: "
                 f"{'too few' if len(poses) < 4 else 'too alike'} to track gravity from pose to "
                 "pose",
                 {},
@@ -719,7 +719,7 @@ class _Bench:
             return self.say(
                 "accelerometer",
                 UNKNOWN,
-                f"{number_of(len(means), 'still pose')}: too few or too alike to "
+                f"{number_of(len(means), 'nearly still pose')}: too few or too alike to "
                 "separate offset and scale",
                 {},
                 "Hold it still in nine poses, each tilted a different way.",
