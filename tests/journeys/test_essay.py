@@ -94,6 +94,24 @@ def test_a_link_to_a_stop_shows_that_stop_and_leaves_room_for_its_text(page, sit
     wait_for_stop(page, before)
 
 
+def test_the_answer_to_a_task_comes_only_when_the_reader_goes_on(page, site):
+    open_essay(page, f"{site}{ESSAY}#three-are-enough")
+    wait_for_stop(page, "three-are-enough")
+    task, answer = page.locator("#three-are-enough > p").all()[:2]
+    assert task.evaluate(SEEN) and not answer.evaluate(SEEN)
+    look = page.locator(".world .look")
+    assert "The star is 41 degrees away" in look.inner_text()
+    page.mouse.move(30, page.viewport_size["height"] - 30)
+    for _ in range(60):
+        if "Three motors were enough" not in look.inner_text():
+            page.mouse.wheel(0, 40)
+            page.wait_for_timeout(150)
+    assert "Three motors were enough" in look.inner_text()
+    # Its paragraph is being read when the gimbal shows it.
+    assert answer.evaluate("(it) => innerHeight / 2 < it.getBoundingClientRect().bottom")
+    assert answer.evaluate("(it) => it.getBoundingClientRect().top < innerHeight")
+
+
 @pytest.mark.parametrize("page", [ZOOMED], indirect=True)
 def test_at_400_percent_a_link_to_a_stop_shows_its_text_and_its_still(page, site):
     """The moving figure would fill the window, so each stop has its still instead."""

@@ -5,7 +5,7 @@ import re
 import pytest
 from places import HTML, html_pages
 
-from notebook_pages.first_view import MARKED, first_part
+from notebook_pages.first_view import MARKED
 
 LONG = "chapters/unit-quaternions.html"
 SIZES = {"wide": {"width": 1300, "height": 900}, "narrow": {"width": 380, "height": 760}}
@@ -177,10 +177,3 @@ def test_lecture_mode_begins_with_the_whole_page(open_page):
     page.wait_for_selector("html.lecture:not(.in-parts)")
     page.keyboard.press("End")
     assert page.locator(".in-step").last.is_visible()
-
-
-def test_the_first_part_ends_at_a_mark_and_not_at_a_word():
-    assert (
-        first_part('<p class="lateral">A moment later it</p><p class="a later">more')
-        == '<p class="lateral">A moment later it</p><p '
-    )

@@ -21,8 +21,7 @@ from playwright.sync_api import TimeoutError
 
 import orientation_recordings as recordings
 from notebook_pages import fonts, mathematics
-from notebook_pages.lighten import lighten, share_outlines
-from orientation_figures.plot import Plot
+from notebook_pages.lighten import lighten
 
 PAGES = html_pages()
 # Representative pages: one with text, formulas and a figure, and one with questions and their
@@ -604,17 +603,3 @@ def test_drawings_of_exercises_stand_on_the_papers_colour(browser, site):
         # The drawing is visible on it, in colours between light and dark.
         dark, light = seen.convert("L").getextrema()
         assert light - dark > 100
-
-
-def test_letters_are_drawn_once_and_a_blank_not_at_all():
-    with Plot(alt="Empty axes with two words above them and the same two below.") as plot:
-        plot.axes.set(title="two words", xlabel="two words")
-    alone = plot._repr_html_()
-    blank = re.search(r'<path (?![^>]*\bd=)[^>]*\bid="', alone)
-    assert blank, "Matplotlib draws blanks no more: share_outlines need not know them"
-    body = share_outlines(alone + alone)
-    outlines = re.findall(r'<path id="(o\d+)"([^>]*)/>', body)
-    assert all(re.search(r'\bd="[^"]', outline) for _, outline in outlines)
-    assert len({outline for _, outline in outlines}) == len(outlines)
-    links = re.findall(r'<use [^>]*href="#([^"]*)"', body)
-    assert set(links) == {name for name, _ in outlines} and links.count(links[0]) >= 2

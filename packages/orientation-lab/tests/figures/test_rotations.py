@@ -155,7 +155,7 @@ def test_the_cable_hangs_on_camera_and_wall_and_after_two_turns_it_is_flat():
 
 def test_paper_and_page_see_every_point_at_the_same_place():
     world = scenes()
-    paper = painter.Paper(STILLS["which-way"]["view"], world)
+    paper = painter.Paper(STILLS["which-way"], world)
     for point, (x, y, depth) in tried()["seen"]:
         place, far = paper.place(point)
         assert place == pytest.approx(

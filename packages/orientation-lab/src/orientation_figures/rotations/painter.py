@@ -105,22 +105,20 @@ SHAPES = {"arc": _arc, "rod": _rod, "ball": _ball, "box": _box, "ribbon": _ribbo
 class Paper:
     """The square sheet on which a scene is drawn, ``size`` pixels wide.
 
-    ``world`` describes the camera: ``distance``, ``target``, ``half``, ``ground`` and ``light`` of
-    ``scenes.json``.
+    ``still`` says what the eye sees, by ``view``, ``target`` and ``half``, and ``world`` what all
+    stills share: ``distance``, ``ground`` and ``light`` of ``scenes.json``.
     """
 
-    def __init__(self, view, world):
-        self.view, self.world = np.array(view), world
-        self.target, self.light = np.array(world["target"]), np.array(world["light"])
-        self.half = world["size"] / 2
+    def __init__(self, still, world):
+        self.view, self.world, self.half = np.array(still["view"]), world, world["size"] / 2
+        self.target, self.light = np.array(still["target"]), np.array(world["light"])
+        self.scale = self.half / still["half"]
         self.eye = self.target + world["distance"] * self.view[2]
 
     def place(self, points):
         """Return the places of points in pixels right and down from the middle, and their depth."""
         x, y, z = np.moveaxis((np.asarray(points) - self.target) @ self.view.T, -1, 0)
-        near = (
-            self.world["distance"] / (self.world["distance"] - z) * self.half / self.world["half"]
-        )
+        near = self.world["distance"] / (self.world["distance"] - z) * self.scale
         return np.stack((near * x, -near * y), axis=-1), z
 
     def faces(self, item):
@@ -181,7 +179,7 @@ class Paper:
             np.stack((-along[:, 1], along[:, 0]), axis=-1)
             / np.maximum(np.linalg.norm(along, axis=1), 1e-9)[:, None]
         )
-        across *= (radii * self.half / self.world["half"])[:, None]
+        across *= (radii * self.scale)[:, None]
         for k in range(0, len(points) - 1, 3):
             piece = slice(k, k + 4)
             band = np.concatenate(
@@ -212,7 +210,7 @@ def picture(still, world, colours=None):
     ``colours`` gives the colour of a class, for programs that do not know the style sheet of a
     page.
     """
-    paper = Paper(still["view"], world)
+    paper = Paper(still, world)
     faces = [face for item in still["items"] for face in paper.faces(item)]
     faces += [face for item in still["items"] if item[7] for face in paper.shadow(item)]
     faces.sort(key=lambda face: round(face[0], 9))

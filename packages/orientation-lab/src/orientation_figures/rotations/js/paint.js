@@ -1,6 +1,6 @@
 // Paints a scene with WebGL, in hardware or in software.
 import { Camera, Geometry, Mesh, Program, Renderer, Transform } from 'ogl';
-import { DISTANCE, GROUND, HALF, LIGHT, RIM, TARGET } from './scene.js';
+import { DISTANCE, GROUND, LIGHT, RIM } from './scene.js';
 import { add, scale } from '../../moving/js/mathematics.js';
 import { CHANGING, surfaceOf } from './shapes.js';
 
@@ -83,8 +83,6 @@ export class Painter {
     this.high = high;
     this.renderer.dpr = fine;
     this.renderer.setSize(wide, high);
-    const shown = wide < high ? HALF * high / wide : HALF;
-    this.camera.perspective({ fov: 2 * Math.atan(shown / DISTANCE) * 180 / Math.PI, aspect: wide / high });
   }
 
   geometry(shape, of) {
@@ -129,9 +127,10 @@ export class Painter {
     return mesh;
   }
 
-  paint({ items, view }) {
-    const [right, up, toward] = view;
-    this.eye = add(TARGET, scale(DISTANCE, toward));
+  paint({ items, view, target, half }) {
+    const [right, up, toward] = view, { wide, high } = this;
+    this.eye = add(target, scale(DISTANCE, toward));
+    this.camera.perspective({ fov: 2 * Math.atan(half * Math.max(1, high / wide) / DISTANCE) * 180 / Math.PI, aspect: wide / high });
     this.camera.matrix.set(...right, 0, ...up, 0, ...toward, 0, ...this.eye, 1);
     this.camera.worldMatrixNeedsUpdate = true;
     for (const pool of this.meshes.values()) pool.used = 0;

@@ -15,8 +15,10 @@ export const deg = (angle) => angle * PI / 180;
 export const SEQUENCE = 'zxy';
 export const GROUND = -2.2, RIM = 1.42;   // the height of the ground, and its radius
 export const LIGHT = unit([0.55, 0.1, 1]);
-export const DISTANCE = 8.5, TARGET = [0, 0, -0.42], HALF = 2.46;   // of the eye; what it looks at; half of what it sees there
-const REACH = 1.62;
+// The distance of the eye; what it looks at, and half of what it sees there; the half when it looks closely, at the camera.
+export const DISTANCE = 8.5;
+const TARGET = [0, 0, -0.42], HALF = 2.46, CLOSE = 1.75;
+const REACH = 1.62, LOOKING = 1.2;
 const mix = (a, b, part) => a + (b - a) * part;
 const clamp = (value) => Math.min(1, Math.max(0, value));
 // Go from 0 to 1 as t goes from one moment to another, smoothly at both ends.
@@ -40,15 +42,14 @@ export function viewFrom(azimuth, elevation) {
 }
 
 // Return where a point is seen: right and up in halves of the picture's smaller side, and how near it is.
-export function project(view, point, distance = DISTANCE) {
-  const [x, y, z] = times(view, subtract(point, TARGET)), near = distance / (distance - z);
-  return [near * x / HALF, near * y / HALF, z];
+export function project({ view, target, half }, point) {
+  const [x, y, z] = times(view, subtract(point, target)), near = DISTANCE / (DISTANCE - z) / half;
+  return [near * x, near * y, z];
 }
 
 export function frames(angles) {
-  const [b, c, d] = angles.map((angle, k) => simpleDcm(SEQUENCE[k], angle));
-  const B = b, C = multiply(c, B), D = multiply(d, C);
-  return { A: IDENTITY, B, C, D };
+  const [B, c, d] = angles.map((angle, k) => simpleDcm(SEQUENCE[k], angle)), C = multiply(c, B);
+  return { A: IDENTITY, B, C, D: multiply(d, C) };
 }
 
 // Return the angles of a matrix nearest to the previous ones, out of the two triples that always exist.
@@ -133,14 +134,6 @@ class Scene {
     if (alpha * this.alpha > 0.3) this.labels.push({ at, text, colour, from });
   }
 
-  circle(u, v, radius, from, to, colour, thick = 0.014, origin = [0, 0, 0], alpha = 1) {
-    const count = Math.max(2, Math.ceil(Math.abs(to - from) / 0.12));
-    this.tube(Array.from({ length: count + 1 }, (_, k) => {
-      const angle = from + (to - from) * k / count;
-      return add(origin, scale(radius * Math.cos(angle), u), scale(radius * Math.sin(angle), v));
-    }), thick, colour, alpha);
-  }
-
   // Add the path of a vector that rotates about an axis, with an arrow's head.
   sweep(axis, angle, start, colour, { thick = 0.018, origin = [0, 0, 0], head = true, alpha = 1 } = {}) {
     if (Math.abs(angle) < 0.03) return;
@@ -150,6 +143,8 @@ class Scene {
     this.tube(Array.from({ length: count + 1 }, (_, k) => at((1 - tip) * k / count)), thick, colour, alpha);
     if (head) this.rod(at(1 - tip), at(1), 2.8 * thick, colour, { top: 0, alpha });
   }
+
+  circle(axis, start, colour, options) { this.sweep(axis, 2 * PI, start, colour, { head: false, ...options }); }
 
   triad(letter, rows, { reach = REACH, origin = [0, 0, 0], alpha = 1, thick = 0.028, labels = true } = {}) {
     rows.forEach((row, k) => this.arrow(origin, add(origin, scale(reach, row)), letter,
@@ -220,7 +215,7 @@ class Scene {
 
 // ---- the stops: what each shows besides the machine --------------------------------------------------------
 
-const ZERO = [0, 0, 0];
+const ZERO = [0, 0, 0], [, , UP] = IDENTITY;
 const poses = (...list) => list.map((pose) => pose.map(deg));
 
 // Pass through a list of poses, one after another, as t goes from 0 to 1.
@@ -236,32 +231,34 @@ export const GENERIC = poses([28, 24, -22])[0];
 export const CROOKED = poses([84, 32, -58])[0];
 export const FROM = poses([-80, 60, -30])[0], TO = poses([100, 65, 40])[0];   // of stop 14
 const SWING = deg(90), TILT = deg(70), FOUR = unit([0.5, 0.35, 0.8]);   // of stop 6, and the line of stop 12
-export const SAME = poses([35, 50, 65])[0];   // the angles of stop 8
 // At the star, and from there to the second triple of its angles, one motor after the other.
-const TOWARDS_STAR = poses([22, 36, 0], [22, 36, 0], [202, 36, 0], [202, 144, 0], [202, 144, 180]);
+const TOWARDS_STAR = poses([0, 0, 0], [22, 0, 0], [22, 36, 0], [22, 36, 0], [202, 36, 0], [202, 144, 0], [202, 144, 180]);
 export const CABLE = { wall: 2.05, start: 0.5 };
 export const axisOf = (start) => axisAngleFromDcm(frames(start).D);
 
 // The position of the eye where it differs from the usual one.
-export const EYES = { 'not-home': [8, 24], 'two-mirrors': [25, 35], 'between-poses': [64, 50], lock: [52, 40] };
+// Its azimuth and height, and how close it is, from 0 to 1.
+export const EYES = { 'one-motor': [52, 17, 0.7], 'nine-shadows': [52, 17, 0.7], 'looking-back': [52, 38, 0.3], lock: [52, 40, 0], 'one-turn': [52, 17, 0.5],
+  'two-mirrors': [25, 40, 0.6], 'four-numbers': [52, 17, 0.6], 'not-home': [8, 24, 0.6], 'between-poses': [64, 50, 0.7], 'it-moves': [52, 17, 0.8] };
 
-// The course of the angles and the rest at a moment of a stop; start: the pose in which the stop was entered.
+// The course of the angles and the rest at a moment of a stop; start: the pose in which the stop was entered. Each
+// paragraph of the stop's text has an equal share of the time from 0 to 1, so that the figure shows what it says.
 export const COURSE = {
-  'which-way': (t) => ({ angles: through([AT_READER, AT_READER, poses([-38, -2, 0])[0]], t) }),
-  'two-triads': (t) => ({ angles: GENERIC, away: between(t, 0.35, 0.95) }),
-  'one-motor': (t) => ({ angles: through(poses([0, 0, 0], [60, 0, 0], [120, 0, 0]), t, [0, 0.6, 1]) }),
-  'nine-shadows': (t) => ({ angles: GENERIC, lit: Math.min(2, Math.floor(3 * t)) }),
-  'looking-back': (t) => ({ angles: through(poses([0, 12, 0], [55, 12, 0], [0, 12, 0], [0, 12, 0], [55, 12, 0]), t, [0, 0.16, 0.28, 0.34, 0.75]), ride: t > 0.3 ? 1 : 0 }),
-  'two-motors': (t) => ({ angles: [SWING * between(t, 0.08, 0.42), TILT * between(t, 0.5, 0.88), 0] }),
-  'three-are-enough': (t) => ({ angles: t < 0.45 ? [0, 0, 0] : through(TOWARDS_STAR, t, [0.45, 0.6, 0.73, 0.86, 0.99]) }),
-  'same-numbers': (t) => ({ angles: SAME.map((angle) => angle * between(t, 0.1, 0.8)) }),
-  lock: (t) => ({ angles: through(poses([0, 20, 0], [0, 90, 0], [-50, 90, 50], [-50, 90, 50]), t, [0, 0.35, 0.65, 1]) }),
-  'one-turn': (t, start) => ({ part: between(t, 0.15, 0.9) , start }),
-  'two-mirrors': (t) => ({ angles: ZERO, together: between(t, 0.25, 0.55), apart: between(t, 0.6, 0.95) }),
-  'four-numbers': (t) => ({ whole: 4 * PI * between(t, 0.1, 0.95) }),
-  'not-home': (t) => ({ angles: ZERO, turn: t < 0.6 ? 2 * PI * between(t, 0.05, 0.3) : 2 * PI * (1 + between(t, 0.6, 0.75)),
-    passed: t < 0.6 ? between(t, 0.35, 0.55) : between(t, 0.8, 0.98) }),
-  'between-poses': (t) => ({ part: between(t, 0.1, 0.9) }),
+  'which-way': (t) => ({ angles: through([AT_READER, AT_READER, poses([-110, 8, 0])[0]], t, [0, 0.34, 0.6]) }),
+  'two-triads': (t) => ({ angles: GENERIC, away: between(t, 0.68, 0.95) }),
+  'one-motor': (t) => ({ angles: through(poses([0, 0, 0], [40, 0, 0], [40, 0, 0], [120, 0, 0], [120, 0, 0], [40, 0, 0]), t, [0.03, 0.28, 0.36, 0.62, 0.69, 0.92]) }),
+  'nine-shadows': (t) => ({ angles: GENERIC, lit: Math.max(0, Math.ceil(3 * t) - 1) }),
+  'looking-back': (t) => ({ angles: through(poses([0, 12, 0], [55, 12, 0], [0, 12, 0], [0, 12, 0], [55, 12, 0]), t, [0.02, 0.18, 0.3, 0.42, 0.64]), ride: t > 0.34 ? 1 : 0, faded: t > 0.67 ? 1 : 0 }),
+  'two-motors': (t) => ({ angles: [SWING * between(t, 0.02, 0.15), TILT * between(t, 0.18, 0.31), 0] }),
+  'three-are-enough': (t) => ({ angles: through(TOWARDS_STAR, t, [0.35, 0.41, 0.5, 0.68, 0.76, 0.84, 0.93]) }),
+  'same-numbers': (t) => ({ angles: poses([35, 50, 65])[0].map((angle, k) => angle * between(t, 0.36 + 0.09 * k, 0.44 + 0.09 * k)) }),
+  lock: (t) => ({ angles: through(poses([0, 20, 0], [0, 90, 0], [-50, 90, 50], [-50, 90, 50]), t, [0.02, 0.16, 0.31, 1]) }),
+  'one-turn': (t, start) => ({ part: between(t, 0.04, 0.3), start }),
+  'two-mirrors': (t) => ({ angles: ZERO, together: 0.5 * between(t, 0.27, 0.36) + 0.5 * between(t, 0.53, 0.66), apart: between(t, 0.38, 0.48) }),
+  'four-numbers': (t) => ({ whole: 2 * PI * (0.4 * between(t, 0.03, 0.3) + 0.6 * between(t, 0.69, 0.94)) }),
+  'not-home': (t) => ({ angles: ZERO, turn: 2 * PI * (between(t, 0.02, 0.17) + between(t, 0.61, 0.68)),
+    passed: between(t, 0.42, 0.49) - between(t, 0.51, 0.58) + between(t, 0.7, 0.78) }),
+  'between-poses': (t) => ({ part: between(t, 0.36, 0.95) }),
   'it-moves': (t) => ({ time: LASTS * clamp(t) }),
   'your-turn': (t, start) => ({ angles: start }),
 };
@@ -324,9 +321,8 @@ export function ways(part) {
     angles: frames(FROM.map((angle, k) => mix(angle, TO[k], part))).D };
 }
 
-// Both whole ways in small steps, cached because they are the same in every picture.
-let whole = null;
-export const wholeWays = () => { whole ??= Array.from({ length: 73 }, (_, k) => ways(k / 72)); return whole; };
+// Both whole ways in small steps.
+export const WHOLE_WAYS = Array.from({ length: 73 }, (_, k) => ways(k / 72));
 
 // Return the total angle of a way, in radians: the sum of its small rotations.
 export const turnedAlong = (list) => list.slice(1).reduce((sum, dcm, k) => sum + apart(list[k], dcm), 0);
@@ -340,11 +336,15 @@ const SHOWS = {
     scene.camera(D, { at: to, size: 0.55, alpha: 0.25 * s.away });
   },
   'one-motor'(scene, s, { D }) {
-    scene.circle(IDENTITY[0], IDENTITY[1], REACH, 0, 2 * PI, 'muted', 0.011);
-    scene.sweep([0, 0, 1], wrapped(s.angles[0]), [0.62, 0, 0], 'accent');
+    scene.circle(UP, [REACH, 0, 0], 'muted', { thick: 0.011 });
+    scene.sweep(UP, wrapped(s.angles[0]), [0.62, 0, 0], 'accent');
     shadows(scene, D[0], [0, 1]);
   },
   'nine-shadows'(scene, s, { D }) { shadows(scene, D[s.lit], [0, 1, 2]); },
+  'looking-back'(scene, s, { D }) {
+    // One arrow's shadow on another is as long as the other's on the one.
+    if (s.faded > 0.5) for (const [from, onto] of [[D[1], IDENTITY[1]], [IDENTITY[1], D[1]]]) shadow(scene, from, onto, LOOKING);
+  },
   'two-motors'(scene, s) {
     // The ghost tilts when the text swings the camera, and swings when it tilts. Held, both have the same angles (`own`).
     const [psi, theta] = [[0, 1, SWING / TILT], [1, 0, TILT / SWING]].map(([k, j, share]) => mix(share * s.angles[j], s.angles[k], s.own));
@@ -355,8 +355,8 @@ const SHOWS = {
   'three-are-enough'(scene, s, { D }) {
     scene.star(scale(1.95, STAR));
     const [psi, theta] = s.angles, flat = [-Math.sin(psi), Math.cos(psi), 0];
-    scene.circle(IDENTITY[0], IDENTITY[1], 1.38, 0, 2 * PI, 'muted', 0.009);
-    scene.sweep([0, 0, 1], wrapped(psi), [0, 1.38, 0], 'B', { thick: 0.022 });
+    scene.circle(UP, [1.38, 0, 0], 'muted', { thick: 0.009 });
+    scene.sweep(UP, psi % (2 * PI), [0, 1.38, 0], 'B', { thick: 0.022 });
     scene.sweep([Math.cos(psi), Math.sin(psi), 0], theta, scale(1.38, flat), 'C', { thick: 0.022 });
     scene.arrow(scale(0.6, D[1]), scale(1.62, D[1]), 'D');
     scene.arrow(scale(0.3, D[2]), scale(1.0, D[2]), 'D');
@@ -382,7 +382,7 @@ const SHOWS = {
     scene.dashes(scale(-1.7, B[0]), scale(1.7, B[0]), 0.017, 'muted', 14);
     scene.label(scale(1.7, B[0]), '\\theta', 'ink');
     // The star passes from overhead along the line that the camera cannot follow: towards b_x.
-    const gone = deg(38) * between(s.t, 0.68, 1);
+    const gone = deg(38) * between(s.t, 0.38, 0.62);
     if (s.t > 0.1) {
       const at = (angle) => add(scale(1.85 * Math.cos(angle), [0, 0, 1]), scale(1.85 * Math.sin(angle), B[0]));
       scene.star(at(gone), 0.1);
@@ -398,16 +398,15 @@ const SHOWS = {
     for (const row of frames(start).D) {   // the circle of each arrow's tip, and the completed part
       const foot = scale(dot(row, axis) * 1.3, axis), arm = subtract(scale(1.3, row), foot);
       if (length(arm) < 0.08) continue;
-      const u = unit(arm);
-      scene.circle(u, cross(axis, u), length(arm), 0, 2 * PI, 'muted', 0.008, foot, 0.8);
+      scene.circle(axis, arm, 'muted', { thick: 0.008, origin: foot, alpha: 0.8 });
       scene.sweep(axis, -angle * part, arm, 'accent', { origin: foot, thick: 0.02 });
     }
     scene.triad('D', D, { reach: 1.3 });
   },
   'two-mirrors'(scene, s) {
-    const axis = unit([0.1, -0.2, 1]), u = unit(cross([0, 1, 0.2], axis)), v = cross(axis, u);
+    const axis = unit([0.1, -0.2, 1]), u = unit(cross([-1, 0, 0.2], axis)), v = cross(axis, u);
     const way = (angle) => add(scale(Math.cos(angle), u), scale(Math.sin(angle), v));
-    const first = deg(20) + s.together * deg(55), gap = deg(35) + s.apart * deg(30), second = first + gap;
+    const first = deg(20) - s.together * deg(52), gap = deg(35) + s.apart * deg(30), second = first + gap;
     for (const [angle, name] of [[first, '\\hat{u}_1'], [second, '\\hat{u}_2']]) {
       const edge = (side, high) => add(scale(1.45 * side, way(angle)), scale(high, axis));
       scene.ribbon([edge(-1, -1.25), edge(1, -1.25)], [edge(-1, 1.25), edge(1, 1.25)], 'glass', 0.34);
@@ -428,7 +427,7 @@ const SHOWS = {
     scene.label(once, '\\mathbf{v}\'', 'ink');
     scene.arrow(ZERO, twice, 'D', { thick: 0.035 });
     scene.label(twice, '\\mathbf{v}\'\'', 'D');
-    scene.circle(u, v, 0.62, first, second, 'ink', 0.02);
+    scene.sweep(axis, gap, scale(0.62, way(first)), 'ink', { thick: 0.02, head: false });
     scene.label(scale(0.66, way((first + second) / 2)), '\\theta/2', 'ink');
     scene.label(scale(1, way(deg(-32) + gap)), '\\theta', 'accent');
     scene.sweep(axis, 2 * gap, scale(0.95, way(deg(-32))), 'accent', { thick: 0.022 });
@@ -439,14 +438,14 @@ const SHOWS = {
     scene.label(scale(1.9, axis), '\\hat{e}', 'accent');
     const arm = scale(1.3, unit(cross(axis, aside)));
     scene.sweep(axis, angle % (2 * PI), arm, 'D', { thick: 0.024 });
-    scene.circle(unit(arm), cross(axis, unit(arm)), 1.3, 0, 2 * PI, 'muted', 0.008);
+    scene.circle(axis, arm, 'muted', { thick: 0.008 });
     // Along the axis is the vector part, as long as the sine of half the angle.
     if (Math.abs(Math.sin(half)) > 0.05) scene.arrow(ZERO, scale(1.5 * Math.sin(half), axis), 'accent', { thick: 0.045 });
     scene.triad('D', D, { reach: 1.15, thick: 0.022, labels: false });
     // The circle of the half angle, flat in front of the eye.
-    const [right, up] = s.view, middle = add(TARGET, scale(-1.6, right), scale(1.62, up)), r = 0.56;
+    const [right, up] = s.view, middle = add(s.target, scale(-0.65 * s.half, right), scale(0.66 * s.half, up)), r = 0.24 * s.half;
     const at = (angle, far = r) => add(middle, scale(far * Math.sin(angle), right), scale(far * Math.cos(angle), up));
-    scene.circle(right, up, r, 0, 2 * PI, 'muted', 0.014, middle);
+    scene.circle(s.view[2], scale(r, up), 'muted', { thick: 0.014, origin: middle });
     scene.rod(at(0, -r), at(0), 0.008, 'muted');
     scene.rod(at(PI / 2, -r), at(PI / 2), 0.008, 'muted');
     const point = at(half), [c, d] = [Math.cos(half), Math.sin(half)];
@@ -460,8 +459,8 @@ const SHOWS = {
   },
   'not-home'(scene, s) {
     const count = 64, left = [], right = [];
-    for (let k = 0; k <= count; k += 1) {
-      const part = k / count, far = mix(CABLE.start, CABLE.wall, part);
+    for (let k = -1; k <= count; k += 1) {
+      const part = k / count, far = k < 0 ? 0.2 : mix(CABLE.start, CABLE.wall, part);   // it begins at the camera's back
       // In the belt figure the wall is at rest and the plate rotates, so the loop is read from its end.
       const rows = dcmFromQuaternion(quaternionAt(s.turn, s.passed, 1 - part));
       const place = (across) => times(transpose(rows), [across, -far, 0]);
@@ -478,16 +477,16 @@ const SHOWS = {
   },
   'between-poses'(scene, s, { D }) {
     const [from, to] = [FROM, TO].map((angles) => frames(angles).D), { one, angles } = ways(s.part);
-    const line = (kind) => wholeWays().map((both) => scale(1.5, both[kind][1]));
+    const line = (kind) => WHOLE_WAYS.map((both) => scale(1.5, both[kind][1]));
     // The two ways are what the reader is asked for first, so they are not drawn before that.
     if (s.free ? apart(D, to) < deg(15) : s.part) scene.tube(line('one'), 0.02, 'accent'), scene.tube(line('angles'), 0.016, 'B');
     for (const [rows, letter] of [[from, '0'], [to, '1']]) {
-      scene.ball(scale(1.5, rows[1]), 0.06, 'ink');
+      flag(scene, rows, 'ink', 0.06);
       scene.label(scale(1.62, rows[1]), letter, 'ink');
       scene.camera(rows, { alpha: 0.16, lamp: false });
     }
-    if (!s.free && s.part) scene.ball(scale(1.5, angles[1]), 0.075, 'B'), scene.camera(angles, { alpha: 0.3, colour: 'B', lamp: false });
-    scene.ball(scale(1.5, D[1]), 0.085, 'accent');
+    if (!s.free && s.part) flag(scene, angles, 'B', 0.07), scene.camera(angles, { alpha: 0.3, colour: 'B', lamp: false });
+    flag(scene, D, 'accent', 0.085);
     if (s.track.length > 1) scene.tube(s.track.map((rows) => scale(1.54, rows[1])), 0.024, 'D');
   },
   'it-moves'(scene, s, { D }) {
@@ -508,16 +507,25 @@ const SHOWS = {
 // The line and the angle of stop 12: those of the text, or of the pose in the reader's hand.
 export const turnOf = (s) => (s.free ? axisOf(s.angles) : [FOUR, s.whole]);
 
+// Mark where a camera looks, with a mast for the camera's upright.
+function flag(scene, rows, colour, size) {
+  const at = scale(1.5, rows[1]);
+  scene.ball(at, size, colour);
+  scene.rod(at, add(at, scale(0.34, rows[2])), 0.02, colour);
+}
+
 // Show the components of an arrow of length 1 along the hand's arrows: its projections, which are dot products.
 function shadows(scene, row, along) {
   const tip = scale(REACH, row);
   scene.arrow(ZERO, tip, 'D', { thick: 0.045 });
-  for (const k of along) {
-    const foot = scale(REACH * row[k], IDENTITY[k]);
-    if (Math.abs(row[k]) > 0.02) scene.rod(ZERO, foot, 0.055, 'accent');
-    scene.dashes(tip, foot, 0.012, 'accent', 11);
-    scene.ball(foot, 0.055, 'accent');
-  }
+  for (const k of along) shadow(scene, row, IDENTITY[k], REACH);
+}
+
+function shadow(scene, from, onto, reach) {
+  const along = dot(from, onto), foot = scale(reach * along, onto);
+  if (Math.abs(along) > 0.02) scene.rod(ZERO, foot, 0.055, 'accent');
+  scene.dashes(scale(reach, from), foot, 0.012, 'accent', 11);
+  scene.ball(foot, 0.055, 'accent');
 }
 
 // Return the orientation of the camera at a moment, since the angles do not determine everything.
@@ -550,8 +558,8 @@ export function viewOf(s) {
 }
 
 // The other entries of a state, besides those that a stop changes.
-export const REST = { stop: 'which-way', t: 0, angles: AT_READER, eye: [52, 17], ride: 0, away: 0, lit: 0, part: 0, whole: 0, turn: 0,
-  passed: 0, together: 0, apart: 0, time: 0, own: 0, start: GENERIC, free: false, thrown: null, track: [] };
+export const REST = { stop: 'which-way', t: 0, angles: AT_READER, eye: [52, 17, 0], ride: 0, away: 0, lit: 0, part: 0, whole: 0, turn: 0,
+  passed: 0, together: 0, apart: 0, time: 0, own: 0, faded: 0, start: GENERIC, free: false, thrown: null, track: [] };
 
 // Return everything that is seen in a state: { items, labels, view, frames }.
 export function sceneOf(state) {
@@ -560,14 +568,17 @@ export function sceneOf(state) {
   const all = { ...frames(angles), D };
   s.view = viewOf(s);
   s.right = s.view[0];
+  const [, , close] = s.eye;
+  s.target = scale(1 - close, TARGET);
+  s.half = mix(HALF, CLOSE, close);
   s.D = D;
   const shown = { ground: stop.ground ?? 1, machine: stop.machine, camera: stop.camera, A: stop.A, D: stop.D, ...state.shown };
   scene.ground(shown.ground);
-  scene.machine(all, shown.machine, shown.camera);
+  scene.machine(all, mix(shown.machine, 0.09, s.faded), mix(shown.camera, 0.15, s.faded));
   if (shown.A > 0.02) scene.triad('A', IDENTITY, { alpha: shown.A });
-  if (shown.D > 0.02) scene.triad('D', D, { alpha: shown.D, reach: stop.id === 'looking-back' ? 1.2 : REACH });
+  if (shown.D > 0.02) scene.triad('D', D, { alpha: shown.D, reach: stop.id === 'looking-back' ? LOOKING : REACH });
   SHOWS[s.stop]?.(scene, s, all);
-  return { items: scene.items, labels: scene.labels, view: s.view, frames: all };
+  return { items: scene.items, labels: scene.labels, view: s.view, target: s.target, half: s.half, frames: all };
 }
 
 // ---- words -------------------------------------------------------------------------------------------------
@@ -592,9 +603,9 @@ export function lookOf(dcm) {
 
 // Place the labels, in pixels right and down from the middle, each beyond its point and without overlaps. `sizes` gives
 // width and height of each.
-export function placed(labels, view, half, sizes, [wide, high]) {
-  const boxes = labels.map((label, k) => {
-    const [x, y] = project(view, label.at).map((v) => v * half), [u, v] = project(view, label.from).map((w) => w * half);
+export function placed(picture, half, sizes, [wide, high]) {
+  const boxes = picture.labels.map((label, k) => {
+    const [x, y] = project(picture, label.at).map((v) => v * half), [u, v] = project(picture, label.from).map((w) => w * half);
     const out = Math.hypot(x - u, y - v), [w, h] = sizes[k], far = label.still ? 0 : 6 + 0.5 * Math.hypot(w, h) * 0.8;
     const way = out > 3 ? [(x - u) / out, (y - v) / out] : [0.7, 0.7];
     return { x: x + far * way[0], y: -(y + far * way[1]), w, h, fixed: label.still };

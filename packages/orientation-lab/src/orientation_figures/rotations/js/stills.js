@@ -1,5 +1,5 @@
 // Write the scene of each stop at the moment that represents it on paper, for `python -m tools.rotations`.
-import { COURSE, CROOKED, EYES, GENERIC, HALF, REST, TARGET, DISTANCE, GROUND, LIGHT, RIM, placed, project, sceneOf } from './scene.js';
+import { COURSE, CROOKED, EYES, GENERIC, REST, DISTANCE, GROUND, LIGHT, RIM, placed, project, sceneOf } from './scene.js';
 import { AXES } from '../../moving/js/mathematics.js';
 import { LABELS } from '../../moving/js/glyphs.js';
 import { STOPS } from './stops.js';
@@ -18,9 +18,9 @@ export function stateAt(stop, t, start = stop.id === 'one-turn' ? CROOKED : GENE
 }
 
 const stills = STOPS.map((stop) => {
-  const state = stateAt(stop, stop.still), { items, labels, view, frames } = sceneOf(state);
-  const places = placed(labels, view, SIZE / 2, labels.map(sizeOf), [SIZE, SIZE]);
-  return { id: stop.id, before: stop.before, after: stop.after, angles: round(state.angles), frames: round(Object.values(frames)), view: round(view),
+  const state = stateAt(stop, stop.still), picture = sceneOf(state), { items, labels, view, target, half, frames } = picture;
+  const places = placed(picture, SIZE / 2, labels.map(sizeOf), [SIZE, SIZE]);
+  return { id: stop.id, before: stop.before, after: stop.after, angles: round(state.angles), frames: round(Object.values(frames)), view: round(view), target: round(target), half: round(half),
     items: items.map(({ shape, of, rows, origin, size, colour, alpha, casts }) => [shape, round(of), round(rows), round(origin), round(size), colour, round(alpha), casts ? 1 : 0]),
     labels: labels.map(({ at, text, colour }, k) => [text, LABELS[text] && colour !== 'muted' ? 1 : 0, colour, places[k].map((value) => Math.round(10 * value) / 10), round(at)]) };
 });
@@ -29,5 +29,5 @@ const tried = STOPS.flatMap((stop) => [0.37, 0.83].map((t) => {
   const state = stateAt(stop, t), { frames } = sceneOf(state);
   return { id: stop.id, t, state: { ...state, shown: undefined }, frames };
 }));
-const seen = [[0.3, -0.4, 0.9], [1, 0.2, -1.1]].map((point) => [point, project(stills[0].view, point)]);
-process.stdout.write(JSON.stringify({ size: SIZE, half: HALF, target: TARGET, distance: DISTANCE, ground: GROUND, rim: RIM, light: LIGHT, axes: AXES, stills, ...(process.argv.includes('--tried') && { tried, seen }) }));
+const seen = [[0.3, -0.4, 0.9], [1, 0.2, -1.1]].map((point) => [point, project(stills[0], point)]);
+process.stdout.write(JSON.stringify({ size: SIZE, distance: DISTANCE, ground: GROUND, rim: RIM, light: LIGHT, axes: AXES, stills, ...(process.argv.includes('--tried') && { tried, seen }) }));

@@ -6,22 +6,24 @@ import { calm, element, put, words, write } from '../../moving/js/shared.js';
 import { LABELS } from '../../moving/js/glyphs.js';
 import { Sensors } from '../../moving/js/phone.js';
 import { AT_READER, COURSE, CROOKED, EYES, FROM, LASTS, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
-  project, sceneOf, turnOf, turnedAlong, turnedFrame, wholeWays } from './scene.js';
+  project, sceneOf, turnOf, turned, turnedAlong, turnedFrame, WHOLE_WAYS } from './scene.js';
 import { Painter } from './paint.js';
 import { STOPS } from './stops.js';
 
 const PLACE = 'rotations';
+// Those that begin a part of the scene; essay.css puts a gap before each.
+const PARAGRAPHS = ':scope > p + p:not(:has(+ .cell))';
 const DEGREES = 180 / Math.PI, PI = Math.PI;
 const say = (angle) => several(Math.round(angle * DEGREES), 'degrees');
 // What the reader can set: its name, minimum, maximum, step, units per unit of the state, and the sign of the unit.
 const DIALS = {
   psi: ['first motor', -180, 180, 1, DEGREES, '°', 0], theta: ['second motor', -180, 180, 1, DEGREES, '°', 1], phi: ['third motor', -180, 180, 1, DEGREES, '°', 2],
   away: ['carry the camera across', 0, 100, 1, 100, '%'], part: ['share of the way', 0, 100, 1, 100, '%'],
-  together: ['both mirrors together', 0, 55, 1, 55, '°'], apart: ['mirrors apart', 35, 65, 1, 30, '°', null, 35],
+  together: ['both mirrors together', 0, 52, 1, 52, '°'], apart: ['mirrors apart', 35, 65, 1, 30, '°', null, 35],
   whole: ['rotation of the camera', 0, 720, 1, DEGREES, '°'], turn: ['rotation of the camera', 0, 720, 1, DEGREES, '°'],
   passed: ['pass the cable round', 0, 100, 1, 100, '%'], time: ['time', 0, LASTS, 0.1, 1, ' s'],
 };
-const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time', 'own'];
+const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time', 'own', 'faded'];
 const FADES = ['machine', 'camera', 'A', 'D', 'ground'];
 const SWING = [0.5, 0.4, 1.1];   // along A, in radians a second
 const stopOf = (id) => STOPS.find((candidate) => candidate.id === id);
@@ -106,27 +108,31 @@ class World {
 
   // ---- the text moves it -----------------------------------------------------------------------------------
 
-  // Where a stop is in the window when its scene begins, which is where a link to it leads, and for how many pixels of
-  // scrolling the scene continues.
+  // How many pixels are left to scroll until a stop is being read, and until each of its marks: where a link to it leads,
+  // the beginning of each paragraph and the end. Reading begins when a paragraph has come up to the middle of the visible
+  // part of the text.
   course({ place }) {
-    const { top, height } = place.getBoundingClientRect();
+    const { top, bottom } = place.getBoundingClientRect();
     const begins = Math.min(parseFloat(getComputedStyle(place).scrollMarginTop), top + scrollY);   // the first is higher up
-    const line = (begins + innerHeight) / 2;
-    return { top, line, begins, lasts: Math.max(1, 0.85 * (height + begins - line)) };
+    const line = (begins + innerHeight) / 2, marks = [top - begins];
+    const tops = [...place.querySelectorAll(PARAGRAPHS)].map((paragraph) => paragraph.getBoundingClientRect().top);
+    for (const y of [...tops, bottom]) marks.push(Math.max(marks.at(-1) + 1, y - line));
+    return { left: top - line, marks, count: marks.length - 1 };
   }
 
-  // Find which stop is being read, and how much of it. Reading begins when a stop has come up to the middle of the
-  // visible part of the text.
+  // Find which stop is being read, and how much of it.
   follow() {
     if (!this.sections.length) return;
-    let now = this.sections[0], part = 0;
+    let now = this.sections[0], read = 0, of = 1;
     for (const section of this.sections) {
-      const { top, line, begins, lasts } = this.course(section);
-      if (top <= line) [now, part] = [section, Math.min(1, Math.max(0, (begins - top) / lasts))];
+      const { left, marks, count } = this.course(section);
+      if (left > 0) continue;
+      const k = marks.findLastIndex((mark) => mark <= 0);
+      [now, of, read] = [section, count, k < 0 ? 0 : k < count ? k - marks[k] / (marks[k + 1] - marks[k]) : count];
     }
     this.enter(now.id);
-    // Even without motion, a scene shows what it asks for only when the reader has read on.
-    this.goal.t = calm() ? (part > 0.25 ? stopOf(now.id).still : 0) : part;
+    // Without motion, a paragraph's scene shows its outcome, but only when the reader has read on.
+    this.goal.t = (calm() ? (read > 0.25 ? Math.ceil(read) : 0) : read) / of;
     if ((this.state.free || this.state.thrown) && Math.abs(this.goal.t - this.heldAt) > 0.22 && !this.held) this.takeBack();
     this.wake();
   }
@@ -178,6 +184,8 @@ class World {
     this.goal.eye = [...EYES[this.state.stop] ?? REST.eye];
     this.takeBack();
   }
+
+  lookFrom(azimuth, elevation) { this.goal.eye = [azimuth, Math.max(-20, Math.min(85, elevation)), this.goal.eye[2]]; }
 
   shownDcm() { return this.picture ? this.picture.frames.D : dcmOf(this.state); }
 
@@ -252,7 +260,7 @@ class World {
   }
 
   drawNames() {
-    const { labels, view } = this.picture;
+    const { labels } = this.picture;
     this.written ??= new Map();
     const used = new Set(), boxes = [];
     for (const label of labels) {
@@ -269,7 +277,7 @@ class World {
     }
     for (const [name, { span }] of this.written) span.hidden = !used.has(name);
     const { clientWidth: wide, clientHeight: high } = this.stage;
-    placed(labels, view, this.half, boxes.map(({ size }) => size), [wide, high]).forEach(([x, y], k) => {
+    placed(this.picture, this.half, boxes.map(({ size }) => size), [wide, high]).forEach(([x, y], k) => {
       const [w, h] = boxes[k].size;
       boxes[k].span.style.transform = `translate(${(wide / 2 + x - w / 2).toFixed(1)}px, ${(high / 2 + y - h / 2).toFixed(1)}px)`;
     });
@@ -345,7 +353,7 @@ class World {
   }
 
   way(D) {
-    const needed = this.needed ??= ['one', 'angles'].map((kind) => turnedAlong(wholeWays().map((both) => both[kind])));
+    const needed = this.needed ??= ['one', 'angles'].map((kind) => turnedAlong(WHOLE_WAYS.map((both) => both[kind])));
     const { track, free, part } = this.state;
     if (!free && !part) return 'The camera is in pose 0.';
     if (!free) return `The single rotation takes ${say(needed[0])}. The red path, in angles, turns the camera through ${say(needed[1])} in all.`;
@@ -367,7 +375,7 @@ class World {
     return [event.clientX - box.left - box.width / 2, box.top + box.height / 2 - event.clientY];
   }
 
-  onScreen(point) { return project(this.picture.view, point).slice(0, 2).map((entry) => entry * this.half); }
+  onScreen(point) { return project(this.picture, point).slice(0, 2).map((entry) => entry * this.half); }
 
   // Return what is under the pointer: an arm with its point, or the camera.
   partAt(at) {
@@ -424,7 +432,7 @@ class World {
     this.held.at = at;
     const { goal, state } = this, { part } = this.held;
     if (!part) {
-      goal.eye = [goal.eye[0] - 0.4 * moved[0], Math.max(-20, Math.min(85, goal.eye[1] - 0.4 * moved[1]))];
+      this.lookFrom(goal.eye[0] - 0.4 * moved[0], goal.eye[1] - 0.4 * moved[1]);
     } else if (state.stop === 'not-home') {
       this.dial('turn', Math.max(0, Math.min(4 * PI, goal.turn + moved[0] / 60)));
     } else if (part === 'D') {
@@ -449,12 +457,12 @@ class World {
 
   // Move an arm as far along its circle as the pointer moves.
   along(k, axis, moved) {
-    const point = this.held.point, small = 0.02, ahead = turnedPoint(axis, small, point);
+    const point = this.held.point, small = 0.02, ahead = turned(axis, small, point);
     const [from, to] = [this.onScreen(point), this.onScreen(ahead)];
     const way = [(to[0] - from[0]) / small, (to[1] - from[1]) / small], size = way[0] ** 2 + way[1] ** 2 + (0.25 * this.half) ** 2;
     const angle = Math.max(-0.3, Math.min(0.3, (moved[0] * way[0] + moved[1] * way[1]) / size));
     this.goal.angles = this.goal.angles.map((one, i) => (i === k ? one + angle : one));
-    this.held.point = turnedPoint(axis, angle, point);
+    this.held.point = turned(axis, angle, point);
   }
 
   release(event) {
@@ -515,16 +523,12 @@ class World {
     if (event.key === 'Home') this.giveBack();
     else if (turn && event.shiftKey && event.key.startsWith('Arrow')) {
       const [dx, dy] = { ArrowLeft: [6, 0], ArrowRight: [-6, 0], ArrowUp: [0, 6], ArrowDown: [0, -6] }[event.key];
-      goal.eye = [goal.eye[0] + dx, Math.max(-20, Math.min(85, goal.eye[1] + dy))];
+      this.lookFrom(goal.eye[0] + dx, goal.eye[1] + dy);
     } else if (turn && this.state.stop === 'not-home') this.dial('turn', Math.max(0, Math.min(4 * PI, goal.turn + 3 * turn[1])));
     else if (turn) {
       this.seize();
       goal.angles = goal.angles.map((angle, k) => (k === turn[0] ? angle + turn[1] : angle));
       if (this.state.stop === 'between-poses') this.state.track = [...this.state.track, frames(goal.angles).D].slice(-400);
-      this.letGo();
-    } else if (this.state.stop === 'nine-shadows' && '123xyz'.includes(event.key)) {
-      this.state.lit = '123xyz'.indexOf(event.key) % 3;
-      this.set.add('lit');
       this.letGo();
     } else return;
     event.preventDefault();
@@ -545,21 +549,13 @@ class World {
       return { name, field, value, factor, sign, motor, zero, title, row: element('label', { class: `dial${motor >= 0 && motor !== null ? ` motor-${motor}` : ''}` }, element('span', {}, title), field, value) };
     });
     this.dials.replaceChildren(...this.open.map(({ row }) => row));
-    if (stop.id === 'it-moves') {
-      this.dials.append(element('div', { class: 'tools' }, element('button', { type: 'button', click: () => {
-        this.seize();
-        this.throwIt(SWING);
-        this.letGo();
-      } }, 'Set it swinging')));
-    }
-    if (stop.id === 'nine-shadows') {
-      this.dials.append(element('div', { class: 'tools' }, ...['x', 'y', 'z'].map((axis, k) => element('button', { type: 'button', click: () => {
-        this.state.lit = k;
-        this.set.add('lit');
-        this.heldAt = this.goal.t;
-        this.letGo();
-      } }, `Shadows of $\\hat{d}_${axis}$`))));
-    }
+    const light = (k) => { this.state.lit = k; this.set.add('lit'); this.heldAt = this.goal.t; };
+    const buttons = { 'it-moves': [['Set it swinging', () => { this.seize(); this.throwIt(SWING); }]],
+      'nine-shadows': ['x', 'y', 'z'].map((axis, k) => [`Shadows of $\\hat{d}_${axis}$`, () => light(k)]) }[stop.id];
+    if (buttons) this.dials.append(element('div', { class: 'tools' }, ...buttons.map(([name, act]) => element('button', { type: 'button', click: () => {
+      act();
+      this.letGo();
+    } }, name))));
   }
 
   showValues() {
@@ -591,7 +587,7 @@ class World {
     const { state, goal } = this, round = (value) => Math.round(value * 1e4) / 1e4;
     const set = Object.fromEntries([...this.set].filter((name) => SCALARS.includes(name)).map((name) => [name, round(goal[name])]));
     const pose = state.free ? goal.angles : state.thrown && anglesNear(state.thrown.dcm, state.angles);
-    return { stop: state.stop, t: round(goal.t), eye: goal.eye.map(round), ...(pose && { angles: pose.map(round) }),
+    return { stop: state.stop, t: round(goal.t), eye: goal.eye.slice(0, 2).map(round), ...(pose && { angles: pose.map(round) }),
       ...(state.thrown && { rate: state.thrown.rate.map(round) }), ...set };
   }
 
@@ -622,15 +618,15 @@ class World {
     const numbers = (list, count, most) => Array.isArray(list) && list.length === count && list.every((number) => Number.isFinite(number) && Math.abs(number) <= most);
     const share = t >= 0 && t <= 1 ? t : 0, section = this.sections.find((candidate) => candidate.id === stop);
     if (section) {
-      const { top, begins, lasts } = this.course(section);
-      scrollTo({ top: scrollY + top - begins + share * lasts, behavior: 'instant' });
+      const { marks, count } = this.course(section), k = Math.min(count - 1, Math.floor(share * count));
+      scrollTo({ top: scrollY + marks[k] + (share * count - k) * (marks[k + 1] - marks[k]), behavior: 'instant' });
       this.follow();
     } else {
       this.enter(stop);
       this.goal.t = share;
     }
     this.state.t = this.goal.t;
-    if (numbers(eye, 2, 360)) this.goal.eye = [eye[0], Math.max(-20, Math.min(85, eye[1]))];
+    if (numbers(eye, 2, 360)) this.lookFrom(...eye);
     if (numbers(angles, 3, 100)) {
       this.seize();
       this.goal.angles = angles;
@@ -682,12 +678,6 @@ class World {
     }, 3000);
   }
 }
-
-const turnedPoint = (axis, angle, point) => {
-  const c = Math.cos(angle), s = Math.sin(angle), along = dot(axis, point);
-  const [x, y, z] = axis, [a, b, d] = point, across = [y * d - z * b, z * a - x * d, x * b - y * a];
-  return point.map((entry, k) => c * entry + s * across[k] + (1 - c) * along * axis[k]);
-};
 
 for (const figure of document.querySelectorAll('.world:not([data-ready], [data-stills])')) {
   const sections = [...document.querySelectorAll('[data-stop]')].map((still) => ({ id: still.dataset.stop, place: still.closest('section') ?? still, still }));
