@@ -172,7 +172,7 @@
     dispatchEvent(new Event("resize"));
   };
   // Scroll the page past a stop as a reader would, so that its figure goes through what the stop shows.
-  const GLIDE = 5000;
+  const GLIDE = 7; // milliseconds a pixel
   let gliding = 0;
   const glide = (stop) => {
     cancelAnimationFrame(gliding);
@@ -181,7 +181,7 @@
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
     const start = performance.now();
     const move = (moment) => {
-      const share = still ? 1 : Math.min(1, Math.max(0, (moment - start) / GLIDE));
+      const share = still ? 1 : Math.min(1, Math.max(0, (moment - start) / (GLIDE * height)));
       scrollTo({ top: from + 0.9 * height * share, behavior: "instant" });
       if (share < 1) gliding = requestAnimationFrame(move);
     };
