@@ -87,10 +87,8 @@ def rows():
             )
             only = facts.get("sequences", {}).get(form, [])
             if len(only) == 1:
-                angles = [{"x": "phi", "y": "theta", "z": "psi"}[letter] for letter in only[0]]
-                names = dict(zip("abc", angles)) | {
-                    f"a{letter}": angle for letter, angle in zip(only[0], angles)
-                }
+                by_axis = BY_AXIS if only[0] == "zxy" else {"ax": "phi", "ay": "theta", "az": "psi"}
+                names = by_axis | dict(zip("abc", (by_axis[f"a{letter}"] for letter in only[0])))
                 form = f"{form}, {'-'.join(only[0])}"
             names |= {f"-{name}": f"-{names[name]}" for name in "abc" if name in names}
             if {"quaternion": form, "axis times angle": "rotation vector"}.get(form) in facts.get(
