@@ -201,9 +201,9 @@ export function render({ model, el }) {
     felt.show([(sensors.force ?? scale(GRAVITY, transpose(dcm)[2])).map((entry) => fixed(entry, 2))]);
     turning.show([(sensors.rate ?? [0, 0, 0]).map((entry) => fixed(degrees(entry), 1))]);
     sheet.draw(() => picture(sheet, dcm));
-    if (!alive && !text.element.textContent) {
+    if (!alive && /^(Body fixed|$)/.test(text.element.textContent)) {   // a message about the sensors stays
       text.say(`Body fixed z-x-y: $\\alpha$ = ${plainDegrees(angles[0], 0)}, $\\beta$ = ${plainDegrees(angles[1], 0)}, `
-        + `$\\gamma$ = ${plainDegrees(angles[2], 0)}. The specific force is that of a phone at rest.`);
+        + `$\\gamma$ = ${plainDegrees(angles[2], 0)}. The specific force and the angular velocity are those of a phone at rest.`);
     }
   }
 
