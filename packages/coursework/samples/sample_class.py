@@ -103,14 +103,14 @@ def code_of(answer: Any) -> str:
 
 def written(question: AuthoredQuestion, answers: Iterable[Any]) -> list[Written]:
     """Return those answers that a student would write, with what the check says to them."""
-    found = []
+    writable = []
     for answer in answers:
         with contextlib.suppress(TypeError, NotPlain):
             code = f"{question.variable} = {code_of(answer)}"
             reply = question.reply_to(question.to_plain(answer))
             line = f"{question.variable} = ...  # your answer"
-            found.append(Written(line, code, (reply.outcome, reply.note)))
-    return found
+            writable.append(Written(line, code, (reply.outcome, reply.note)))
+    return writable
 
 
 def asked_of(question: AuthoredQuestion) -> Asked:

@@ -337,8 +337,8 @@ class AuthoredQuestion:
         results = [self.answer(*arguments) for arguments in calls_for(self.public) or ()]
         columns = [
             {
-                (found.note, json.dumps(found.details)): found.answer
-                for found in catalogued_mistakes(inner, result)
+                (mistake.note, json.dumps(mistake.details)): mistake.answer
+                for mistake in catalogued_mistakes(inner, result)
             }
             for result in results
         ]

@@ -82,10 +82,10 @@ def find_course(start: str | Path = ".") -> Course:
 def course_around(start: str | Path) -> Course | None:
     """Return the course that a folder belongs to, or ``None``."""
     first = Path(start).resolve()
-    found = next(
+    file = next(
         (folder / FILE for folder in (first, *first.parents) if (folder / FILE).is_file()), None
     )
-    return _read(found) if found else None
+    return _read(file) if file else None
 
 
 def gives_by_name(folder: str | Path) -> bool:

@@ -68,8 +68,8 @@ class AboutAnswer(NamedTuple):
     names: list[str]
 
     @classmethod
-    def from_json(cls, found: object, where: str) -> AboutAnswer:
-        answer, names = fields.a_list(found, where)
+    def from_json(cls, content: object, where: str) -> AboutAnswer:
+        answer, names = fields.a_list(content, where)
         return cls(fields.text(answer, where), list(fields.many(fields.text)(names, where)))
 
 

@@ -410,7 +410,7 @@ def selftest(
     paths = notebooks_in(course.sources, only)
     with processes_for(paths) as pool:
         tried = list(pool.map(_try_notebook, paths, [course] * len(paths)))
-    findings = [finding for found, _ in tried for finding in found]
+    findings = [finding for of_notebook, _ in tried for finding in of_notebook]
     if not findings:
         raise AuthorError(f"The notebooks in {course.sources} have no questions.")
     texts = released_texts(course.exercises, course.sealed, course.archive)

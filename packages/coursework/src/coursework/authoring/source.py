@@ -633,7 +633,7 @@ def checked_names(notebook: NotebookNode) -> dict[str, str]:
 
 def checked_in(codes: Iterable[str]) -> dict[str, str]:
     """Return the variables of the answers in some code, by question."""
-    found: dict[str, str] = {}
+    variables: dict[str, str] = {}
     for node in (node for code in codes if "check" in code for node in ast.walk(ast.parse(code))):
         if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "check":
             name, answer = node.args
@@ -641,8 +641,8 @@ def checked_in(codes: Iterable[str]) -> dict[str, str]:
                 raise author.AuthorError(
                     f"{ast.unparse(node)}: call check with a string and a plain variable name."
                 )
-            found[str(name.value)] = answer.id
-    return found
+            variables[str(name.value)] = answer.id
+    return variables
 
 
 def bound(region: str, owners: Mapping[str, str]) -> list[str]:

@@ -86,15 +86,15 @@ class Rule:
         AuthorError
             There are fewer different variants than the rule's number.
         """
-        found: list[dict[str, Any]] = []
+        variants: list[dict[str, Any]] = []
         for order in range(number + 1):
             for attempt in range(MOST_ATTEMPTS):
                 drawn = self._draw(
                     f"{edition}\n{self.name}\n{order}\n{attempt}",
                     first=not (edition or order or attempt),
                 )
-                if drawn not in found and (self.where is None or self.where(drawn)):
-                    found.append(drawn)
+                if drawn not in variants and (self.where is None or self.where(drawn)):
+                    variants.append(drawn)
                     break
             else:
                 raise AuthorError(
@@ -102,7 +102,7 @@ class Rule:
                     f"variants, not {self.count}. Give longer lists, or a smaller "
                     "count."
                 )
-        return found[number]
+        return variants[number]
 
     def _draw(self, seed: str, first: bool) -> dict[str, Any]:
         chance = random.Random(int.from_bytes(hashlib.sha256(seed.encode()).digest()))

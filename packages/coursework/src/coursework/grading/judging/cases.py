@@ -182,13 +182,13 @@ def asked_of(
 
     def at(place: Place) -> Contract:
         version = place.judged or place.contract
-        found = by_their_names.get(place.variant) or (contracts and contracts.of(version))
-        if not found:
+        contract = by_their_names.get(place.variant) or (contracts and contracts.of(version))
+        if not contract:
             raise ValueError(
                 f"{name}: one of its variants was removed and no copy of it was kept (contract "
                 f"{version} is missing). Put the variant back into the source, and judge again."
             )
-        return found
+        return contract
 
     own = at(case.own)
     before = (

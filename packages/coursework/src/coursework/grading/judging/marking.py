@@ -85,7 +85,7 @@ def questions_of(
 def _questions_of(path: str | Path, secret: bytes, edition: str) -> dict[str, tuple[Contract, ...]]:
     source = read_source(path, edition=edition, only=list(names_asked(path)), pictures=True)
     texts = texts_of_questions(source.notebook, source.figures)
-    found = {
+    contracts = {
         name: [contract_of(question, secret, texts.get(name, ""))]
         for name, question in source.questions.items()
     }
@@ -94,8 +94,8 @@ def _questions_of(path: str | Path, secret: bytes, edition: str) -> dict[str, tu
         for name, question in read_source(
             path, number, edition, having, pictures=True
         ).questions.items():
-            found[name].append(contract_of(question, secret))
-    return {name: tuple(variants) for name, variants in found.items()}
+            contracts[name].append(contract_of(question, secret))
+    return {name: tuple(variants) for name, variants in contracts.items()}
 
 
 def of_student(
@@ -450,14 +450,17 @@ def mark_with_siblings(
         What the record remembers.
     """
     known = remembered.get(name)
-    found = mark(name, question, answers.get(name, NOT_RUN), finished, limited)
-    found, had = replace(found, tries=known.tries if known else None), known.help if known else ""
+    own_mark = mark(name, question, answers.get(name, NOT_RUN), finished, limited)
+    own_mark, had = (
+        replace(own_mark, tries=known.tries if known else None),
+        known.help if known else "",
+    )
     for sibling, other in question.second_chances.items():
         helped = sibling in remembered and remembered[sibling].help
-        if sibling in answers and not helped and (had or found.outcome != "correct"):
+        if sibling in answers and not helped and (had or own_mark.outcome != "correct"):
             if judge(sibling, Asked(other), answers[sibling])[0].outcome == "correct":
-                return _by_a_sibling(question.contract, found, sibling)
-    if found.outcome == "correct" and had and (question.siblings or question.second_chances):
+                return _by_a_sibling(question.contract, own_mark, sibling)
+    if own_mark.outcome == "correct" and had and (question.siblings or question.second_chances):
         share = question.contract.credit.get("help", 1)
         said = (
             f"Right, with help: {HELP.get(had, 'we showed it')}. Solve a sibling without help to "
@@ -465,9 +468,9 @@ def mark_with_siblings(
         )
         points = round(question.contract.worth * share, 4)
         return replace(
-            found, note="with help", points=points, messages=(said,) if share < 1 else ()
+            own_mark, note="with help", points=points, messages=(said,) if share < 1 else ()
         )
-    return found
+    return own_mark
 
 
 def _by_a_sibling(contract: Contract, mark_of_sibling: Mark, sibling: str) -> Mark:
@@ -529,12 +532,12 @@ def judge(
             "interrupted while reading",
             f"We had to stop reading this answer. {answer.why or answer.error or ''}".strip(),
         ), ""
-    found: list[str] = []
+    looked_up: list[str] = []
 
     def look_up(text: str) -> Locker | None:
         # A later look-up is another reading of the same answer.
-        if not found:
-            found.append(text)
+        if not looked_up:
+            looked_up.append(text)
         return contract.locker(text)
 
     try:
@@ -559,7 +562,7 @@ def judge(
             # The work is handed in, so "yet" would be wrong.
             reply.messages = ["Nothing was answered."]
         if reply.outcome == "correct" or (reply.note and contract.credit.get(reply.note)):
-            reply = _in_secret(name, contract, answer, plain, reply, found[-1])
+            reply = _in_secret(name, contract, answer, plain, reply, looked_up[-1])
     except NotPlain as error:
         reply = Reply(name, "invalid", "unreadable", [str(error)])
     except MemoryError:
@@ -570,7 +573,7 @@ def judge(
         reply = _undecided(
             name, "not worked out", f"We could not evaluate this answer ({type(error).__name__})."
         )
-    return reply, "".join(found)
+    return reply, "".join(looked_up)
 
 
 def in_calls_of(question: Asked, plain: Plain) -> Plain | None:

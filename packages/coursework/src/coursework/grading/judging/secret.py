@@ -85,14 +85,18 @@ def secret_of(question: AuthoredQuestion, secret: bytes) -> Elsewhere | None:
     for attempt in range(ATTEMPTS):
         seed = hmac.digest(secret, f"{question.name} {attempt}".encode(), "sha256").hex()
         if is_function:
-            found = _of_function(question, seed)
+            elsewhere = _of_function(question, seed)
         else:
-            found = _of_expression(question, seed)
-        if found is not None and is_function and all(call in public.calls for call in found.calls):
+            elsewhere = _of_expression(question, seed)
+        if (
+            elsewhere is not None
+            and is_function
+            and all(call in public.calls for call in elsewhere.calls)
+        ):
             # Prefer calls that no check makes. If the arguments are a few words, there may be none.
-            known, found = (known or found, None)
-        if found is not None:
-            return found
+            known, elsewhere = (known or elsewhere, None)
+        if elsewhere is not None:
+            return elsewhere
     return known
 
 

@@ -460,17 +460,17 @@ def _same(assignment: _Assignment) -> list[tuple[str, int, str]]:
 
 def _oddities(record: Record) -> dict[str, None]:
     """Return what is worth a look in a record, each kind once."""
-    found: dict[str, None] = {}
+    oddities: dict[str, None] = {}
     for notebook in record.notebooks:
-        found.update(dict.fromkeys(notebook.notes))
+        oddities.update(dict.fromkeys(notebook.notes))
         if notebook.unknown_questions:
-            found["it checks an answer to a question that is not in the assignment"] = None
+            oddities["it checks an answer to a question that is not in the assignment"] = None
         outcomes = sorted({cell.outcome for cell in notebook.cells} - {"done", "not run", "error"})
-        found.update(
+        oddities.update(
             dict.fromkeys(
                 f"stopped by a limit, or ended by itself: {outcome}" for outcome in outcomes
             )
         )
     if record.superseded:
-        found["handed in more than once; their feedback says which counts, and why"] = None
-    return found
+        oddities["handed in more than once; their feedback says which counts, and why"] = None
+    return oddities

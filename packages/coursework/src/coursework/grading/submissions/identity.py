@@ -416,7 +416,7 @@ def _submitters(data: bytes) -> dict[str, tuple[list[tuple[str, list[str]]], str
         listed = yaml.safe_load(data)
     except (yaml.YAMLError, ValueError):
         return {}
-    found = {}
+    by_folder = {}
     for folder, about in listed.items() if isinstance(listed, dict) else ():
         submitters = about.get(":submitters") if isinstance(about, dict) else None
         people = []
@@ -427,8 +427,8 @@ def _submitters(data: bytes) -> dict[str, tuple[list[tuple[str, list[str]]], str
         when = about.get(":created_at") if people else None
         time = when.isoformat() if isinstance(when, datetime.datetime) else ""
         if people and all(name or own for name, own in people):
-            found[str(folder)] = people, time
-    return found
+            by_folder[str(folder)] = people, time
+    return by_folder
 
 
 def _own(name: str) -> tuple[tuple[str, str], ...]:

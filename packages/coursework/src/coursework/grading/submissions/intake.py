@@ -365,8 +365,8 @@ def as_time(text: str) -> str | None:
         *(lambda text, form=form: datetime.datetime.strptime(text, form) for form in FORMATS),
     ):
         with contextlib.suppress(ValueError):
-            found = read(bare)
-            return (found.replace(tzinfo=datetime.UTC) if zone else found).isoformat()
+            moment = read(bare)
+            return (moment.replace(tzinfo=datetime.UTC) if zone else moment).isoformat()
     return None
 
 
@@ -971,7 +971,7 @@ def _json(data: bytes) -> dict[str, object]:
 
 
 def _no_key_twice(pairs: list[tuple[str, object]]) -> dict[str, object]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
+    mapping = dict(pairs)
+    if len(mapping) < len(pairs):
         raise Unfit("A key appears twice in one of its entries, so its meaning is ambiguous.")
-    return found
+    return mapping
