@@ -21,7 +21,10 @@ def of_moodle(file):
         if question.get("type") == "cloze":
             for kind, answers in PLACE.findall(question.findtext("questiontext/text")):
                 places.append(
-                    [_of_cloze(kind, *ANSWER.match(one).groups()) for one in answers.split("~")]
+                    [
+                        _of_cloze(kind, *ANSWER.match(answer).groups())
+                        for answer in answers.split("~")
+                    ]
                 )
         else:
             places.append(
@@ -67,11 +70,11 @@ def of_qti(file):
     with zipfile.ZipFile(file) as package:
         documents = {name: package.read(name) for name in package.namelist()}
     manifest = ET.fromstring(documents["imsmanifest.xml"])
-    assert {one.get("href") for one in manifest.findall(".//{*}file")} == documents.keys() - {
+    assert {entry.get("href") for entry in manifest.findall(".//{*}file")} == documents.keys() - {
         "imsmanifest.xml"
     }
     references = ET.fromstring(documents["test.xml"]).iter(f"{QTI}assessmentItemRef")
-    items = [ET.fromstring(documents[one.get("href")]) for one in references]
+    items = [ET.fromstring(documents[reference.get("href")]) for reference in references]
     return {item.get("title"): item for item in items}
 
 
@@ -86,17 +89,19 @@ def marked_by_qti(item, values):
         f"R{place}": words.get((f"R{place}", value), value) for place, value in enumerate(values)
     }
     outcomes = {
-        one.get("identifier"): one.findtext(f"{QTI}defaultValue/{QTI}value")
-        for one in item.iter(f"{QTI}outcomeDeclaration")
+        declaration.get("identifier"): declaration.findtext(f"{QTI}defaultValue/{QTI}value")
+        for declaration in item.iter(f"{QTI}outcomeDeclaration")
     }
     for branch in item.find(f"{QTI}responseProcessing/{QTI}responseCondition"):
         every, *sets = branch
         if all(_holds(test, given) for test in every):
-            outcomes |= {one.get("identifier"): one.findtext(f"{QTI}baseValue") for one in sets}
+            outcomes |= {
+                setting.get("identifier"): setting.findtext(f"{QTI}baseValue") for setting in sets
+            }
             break
     replies = {
-        one.get("identifier"): ET.tostring(one, "unicode", "xml")
-        for one in item.iter(f"{QTI}modalFeedback")
+        feedback.get("identifier"): ET.tostring(feedback, "unicode", "xml")
+        for feedback in item.iter(f"{QTI}modalFeedback")
     }
     return float(outcomes["SCORE"]) / float(outcomes["MAXSCORE"]), replies.get(
         outcomes["FEEDBACK"], ""

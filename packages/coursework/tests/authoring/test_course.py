@@ -175,7 +175,7 @@ def test_the_students_package_has_no_grader(tmp_path):
     assert not any("grading" in name or "authoring" in name for name in names["coursework-checks"])
     assert "coursework/checking/check.py" in names["coursework-checks"]
     assert "coursework/grading/execution/sandbox.py" in names["coursework-tools"]
-    packed = {name for found in names.values() for name in found if name.startswith("coursework/")}
+    packed = {name for files in names.values() for name in files if name.startswith("coursework/")}
     root = PROJECT / "src"
     assert packed == {
         path.relative_to(root).as_posix()
@@ -217,7 +217,9 @@ def test_what_the_packages_import_they_ask_for():
                 for module in {module.partition(".")[0] for module in imported} - set(
                     sys.stdlib_module_names
                 ):
-                    brought_by = {one.lower() for one in belongs_to.get(module, [module])}
+                    brought_by = {
+                        distribution.lower() for distribution in belongs_to.get(module, [module])
+                    }
                     assert module == "coursework" or brought_by & allowed, (name, path.name, module)
 
 
@@ -249,17 +251,17 @@ def test_a_mended_package_has_another_version(tmp_path):
         environment = {**os.environ, "PYTHONPATH": str(place), "PYTHONDONTWRITEBYTECODE": "1"}
         command = [sys.executable, "-c", code, str(tmp_path / "wheels")]
         subprocess.run(command, env=environment, check=True, capture_output=True, cwd=tmp_path)
-        found = {path.name.split("-")[0]: path for path in (tmp_path / "wheels").iterdir()}
-        versions = {path.name.split("-")[1] for path in found.values()}
-        with zipfile.ZipFile(found["coursework_tools"]) as box:
+        wheels = {path.name.split("-")[0]: path for path in (tmp_path / "wheels").iterdir()}
+        versions = {path.name.split("-")[1] for path in wheels.values()}
+        with zipfile.ZipFile(wheels["coursework_tools"]) as box:
             (about,) = (name for name in box.namelist() if name.endswith("METADATA"))
             assert [
                 f"Requires-Dist: coursework-checks=={version}" in box.read(about).decode()
                 for version in versions
             ] == [True]
-        kept = tmp_path / "kept" / found["coursework_checks"].name
+        kept = tmp_path / "kept" / wheels["coursework_checks"].name
         kept.parent.mkdir(exist_ok=True)
-        shutil.copy(found["coursework_checks"], kept)
+        shutil.copy(wheels["coursework_checks"], kept)
         shutil.rmtree(tmp_path / "wheels")
         return *versions, kept
 

@@ -57,14 +57,16 @@ def test_units_are_those_of_sympy():
     for ours, name in names.items():
         converted = theirs.convert_to(getattr(theirs, name), base)
         exponents = converted.as_powers_dict()
-        assert tuple(exponents.get(one, 0) for one in base) == unit(ours).exponents, ours
+        assert tuple(exponents.get(base_unit, 0) for base_unit in base) == unit(ours).exponents, (
+            ours
+        )
         size = converted.subs(dict.fromkeys(base, 1))
         assert float(unit(ours).size) == pytest.approx(float(size), rel=1e-14), ours
     for prefix, power in PREFIXES.items():
         for name in WITH_PREFIX:
             if f"{prefix}{name}" not in ("min", "cd", "mol", "h", "d", "T", "Pa", "m"):
-                found = unit(f"{prefix}{name}")
-                assert float(found.size / unit(name).size) == pytest.approx(10.0**power), (
+                scaled = unit(f"{prefix}{name}")
+                assert float(scaled.size / unit(name).size) == pytest.approx(10.0**power), (
                     prefix,
                     name,
                 )
@@ -119,8 +121,8 @@ def test_a_number_with_its_unit(answer, expected):
 
 def test_a_number_with_its_unit_is_tried_as_others_are():
     question = make("measurement", (sm.Rational(3517, 83), "N m"), symbols={})
-    found = try_question(question, against_sealed=False)
-    assert found.faults == [] and len(found.forms) > 6 and "kg" not in str(question.public)
+    finding = try_question(question, against_sealed=False)
+    assert finding.faults == [] and len(finding.forms) > 6 and "kg" not in str(question.public)
     x = sm.Symbol("x")
     exact = make("measurement", (3 * x**2, "N m"), symbols={"x": (1, 2)})
     assert try_question(exact, against_sealed=False).faults == []
@@ -140,11 +142,11 @@ def test_a_symbol_of_the_name_of_a_unit_is_a_symbol():
 
 def test_the_unit_of_an_exam_is_not_told():
     """Students receive the same for another unit."""
-    one, other = (make("measurement", (3, unit), exam=True).sealed() for unit in ("kN m", "mm"))
-    assert one == other
-    reply = questions.judge("trial/one", one, to_plain((3, "kN m")))
+    sealed, other = (make("measurement", (3, unit), exam=True).sealed() for unit in ("kN m", "mm"))
+    assert sealed == other
+    reply = questions.judge("trial/one", sealed, to_plain((3, "kN m")))
     assert reply.outcome == "recorded"
-    assert questions.judge("trial/one", one, to_plain((3, "kNm"))).note == "unknown unit"
+    assert questions.judge("trial/one", sealed, to_plain((3, "kNm"))).note == "unknown unit"
 
 
 # --- orders and lists -----------------------------------------------------------------------------
@@ -193,8 +195,8 @@ def test_who_guesses_a_list_earns_nothing_on_average():
     shares = []
     for _ in range(600):
         text = " | ".join(chance.choice(words) for _ in range(8)).lower()
-        _, parts, found = marking.parts_right(question, text)
-        shares.append(found)
+        _, parts, earned = marking.parts_right(question, text)
+        shares.append(earned)
         assert parts == 8
     assert sum(shares) / len(shares) < 0.1  # No share is below 0, so the mean is a little above it.
     with pytest.raises(author.AuthorError, match="can be `partial`"):

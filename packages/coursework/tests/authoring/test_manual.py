@@ -33,19 +33,19 @@ TEXT = re.search(r"```text\n(A child .*?)```", MANUAL, re.S)[1]
 
 def examples():
     """Return each example with its cells, and the replies that follow it."""
-    found = []
+    all_examples = []
     for kind, about, text in BLOCK.findall(MANUAL):
         if kind == "example":
-            found.append((about, [text], []))
+            all_examples.append((about, [text], []))
         elif kind == "reply":
-            found[-1][2].append((about, text.rstrip("\n")))
+            all_examples[-1][2].append((about, text.rstrip("\n")))
         else:
-            found[-1][1].extend([TEXT, text])
-    return found
+            all_examples[-1][1].extend([TEXT, text])
+    return all_examples
 
 
 @pytest.mark.parametrize(
-    "about, cells, replies", [pytest.param(*one, id=one[0]) for one in examples()]
+    "about, cells, replies", [pytest.param(*example, id=example[0]) for example in examples()]
 )
 def test_an_example_is_a_question_that_passes(tmp_path, about, cells, replies):
     sources = [("code", SETUP), *(("markdown" if text is TEXT else "code", text) for text in cells)]

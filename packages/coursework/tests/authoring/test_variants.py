@@ -99,7 +99,9 @@ def beside(course, monkeypatch, tmp_path):
 
 def student_with(number, count=6):
     students = (f"{k}@uni.example" for k in range(999))
-    return next(one for one in students if variants.variant_of(one, NAME, count) == number)
+    return next(
+        student for student in students if variants.variant_of(student, NAME, count) == number
+    )
 
 
 @pytest.mark.sampled(2)
@@ -212,9 +214,9 @@ def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_
             # Read the file again each time, as after a reload.
             own = EDITIONS[edition][NUMBERS[who]]
             kept = progress.Progress.read().entry(NAME)
-            assert sum(one.outcome == "correct" for one in (kept, *kept.others)) == len(right), (
-                steps
-            )
+            assert sum(entry.outcome == "correct" for entry in (kept, *kept.others)) == len(
+                right
+            ), steps
             said = repr(check_module.progress())
             assert (": 1 right" in said) == (own in right), (steps, step, said)
             assert ("not yet with yours" in said) == bool(right - {own} and own not in right), (
@@ -239,16 +241,17 @@ def test_how_many_pages_there_are_tells_no_variant_from_another(course, tmp_path
             *sorted((made.sealed / "variants").glob("levers-*.json")),
         ]
     )
-    assert len(first["pages"]) % 4 == 0 and len({len(one["pages"]) for one in rest}) == 1
+    assert len(first["pages"]) % 4 == 0 and len({len(question["pages"]) for question in rest}) == 1
     known = [
         read_source(made.sources / "levers.ipynb", number).questions[NAME] for number in range(1, 6)
     ]
-    assert len({len(one.entries) for one in known}) > 1  # Otherwise this would prove nothing.
+    # Otherwise this would prove nothing.
+    assert len({len(question.entries) for question in known}) > 1
     # Nobody can identify the empty ones by making them again from the data that students have.
-    for one in (first, *rest):
-        pages = one["pages"]
+    for question in (first, *rest):
+        pages = question["pages"]
         for count in range(1, len(pages)):
-            for public in (NAME, one["salt"], first["salt"], "".join(pages[:count])):
+            for public in (NAME, question["salt"], first["salt"], "".join(pages[:count])):
                 made_anew = sealing.pages_filled_up(pages[:count], len(pages), public)
                 assert made_anew[count:] != pages[count:], (count, public)
 
@@ -285,10 +288,10 @@ def test_empty_lockers_are_like_the_others_and_come_again(course):
 
 
 def test_answers_to_another_students_numbers_earn_nothing_and_are_flagged(course, tmp_path):
-    found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
-    assert len(found[NAME]) == 6 and len(found["levers/plain"]) == 1
+    contracts = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
+    assert len(contracts[NAME]) == 6 and len(contracts["levers/plain"]) == 1
     for number in (0, 4):
-        own, _ = marking.of_student(found, student_with(number))
+        own, _ = marking.of_student(contracts, student_with(number))
         for other in range(6):
             given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public.given
             plain = to_plain(given["force"] * given["arm"])
@@ -381,10 +384,10 @@ def test_hints_and_the_worked_solution_are_help(recorded, course, way):
 
 
 def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_path):
-    found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
-    own, _ = marking.of_student(found, student_with(5))
+    contracts = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
+    own, _ = marking.of_student(contracts, student_with(5))
     chances = own[NAME].second_chances
-    assert [one.variant.number for one in chances.values()] == [0, 1]
+    assert [contract.variant.number for contract in chances.values()] == [0, 1]
     right = {
         name: Answer("recorded", to_plain(given["force"] * given["arm"]))
         for name, contract in {NAME: own[NAME].contract, **chances}.items()
@@ -395,8 +398,8 @@ def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_pa
 
     def marked(answers, **helped):
         remembered = {
-            {"own": NAME, "first": first}[one]: Remembered(3, help=had)
-            for one, had in helped.items()
+            {"own": NAME, "first": first}[which]: Remembered(3, help=had)
+            for which, had in helped.items()
         }
         return marking.mark_with_siblings(NAME, own[NAME], answers, remembered)
 
@@ -449,12 +452,12 @@ def test_a_notebook_remembers_tries_and_help(recorded):
         nbformat.v4.new_code_cell(
             "check", outputs=[nbformat.v4.new_output("display_data", {"text/html": text})]
         )
-        for text in [one._repr_html_() for one in shown]
+        for text in [reply._repr_html_() for reply in shown]
         + ['<div class="coursework-reply" data-question="a" data-tries="x">']
     ]
     data = nbformat.writes(nbformat.v4.new_notebook(cells=cells)).encode()
-    found = intake.remembered_in(data)
-    assert found == {NAME: Remembered(2, "mistake")}
+    remembered = intake.remembered_in(data)
+    assert remembered == {NAME: Remembered(2, "mistake")}
     assert (
         intake.remembered_in(b"{}") == {} and intake.remembered_in(b'\xff coursework-reply "') == {}
     )
@@ -511,7 +514,7 @@ def test_an_edition_draws_afresh():
     first, exam = (
         [rule.parameters(number, edition) for number in range(4)] for edition in ("", "exam")
     )
-    assert not [one for one in first if one in exam]
+    assert not [drawn for drawn in first if drawn in exam]
     assert first == [rule.parameters(number) for number in range(4)]
 
 

@@ -88,12 +88,13 @@ def points_of(store):
 
 
 def cluster_of(store, question, student):
-    (found,) = [
-        one
-        for one in Class(store.folder).clusters.values()
-        if one.question == question and student in [record.student for record in one.members]
+    (cluster,) = [
+        candidate
+        for candidate in Class(store.folder).clusters.values()
+        if candidate.question == question
+        and student in [record.student for record in candidate.members]
     ]
-    return found
+    return cluster
 
 
 # --- appeals ------------------------------------------------------------------------------------
@@ -133,7 +134,7 @@ def test_an_appeal_goes_from_step_to_step_and_only_a_decision_accepts_it(out):
     # Once it is closed, another may be raised.
     journal.appeal(record, SUM, "No!", state=REJECTED, of=first, after=state().last, who="Ann")
     journal.appeal(record, SUM, "I ask once more.", who="Ann")
-    assert [one.state for one in Journal(out.folder).standing().appeals[key]] == [
+    assert [appeal.state for appeal in Journal(out.folder).standing().appeals[key]] == [
         "rejected",
         "raised",
     ]
@@ -209,11 +210,11 @@ def test_a_mark_is_that_of_the_day_it_is_asked_for(out):
     record, journal = out.read("ben", "essays"), Journal(out.folder)
     day = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC)
     given = [
-        replace(one, when=f"2026-01-0{number}T00:00:00.000000+00:00")
-        for number, one in enumerate(journal.events, 1)
+        replace(event, when=f"2026-01-0{number}T00:00:00.000000+00:00")
+        for number, event in enumerate(journal.events, 1)
     ]
     journal.path.unlink()
-    (ben,) = [one for one in given if one.student == "ben"]
+    (ben,) = [event for event in given if event.student == "ben"]
     appeal = journal.appeal(record, SUM, "Right!", who="Ann")
     journal.path.unlink()
     months = [f"2026-0{month}-01T00:00:00.000000+00:00" for month in (2, 3)]
@@ -249,7 +250,9 @@ def test_a_table_of_appeals_is_taken_in_once(begun, out, capsys):
         )
     assert "1 appeal is open (ben)" in said.err
     (appeals,) = Journal(out.folder).standing().appeals.values()
-    assert [(len(one.steps), one.steps[0].words) for one in appeals] == [(1, f"=1+1 {SCRIPT}")]
+    assert [(len(appeal.steps), appeal.steps[0].words) for appeal in appeals] == [
+        (1, f"=1+1 {SCRIPT}")
+    ]
     for path in out.folder.rglob("*.csv"):
         cells = [cell for row in csv.reader(path.read_text().splitlines()) for cell in row]
         assert not any(cell.startswith("=") for cell in cells)
@@ -258,16 +261,18 @@ def test_a_table_of_appeals_is_taken_in_once(begun, out, capsys):
 
 def test_appeals_go_with_a_student_whom_a_roster_calls_something_else(begun, out, tmp_path):
     record, journal = out.read("ben", "essays"), Journal(out.folder)
-    one = journal.decision(
+    decision = journal.decision(
         record, SUM, 1, who="Ann", appeal=journal.appeal(record, SUM, "Right!", who="Ann").id
     )
-    journal.append([one], collisions=True)
-    journal.append([journal.decision(record, SUM, 0.5, who="Ben", after=one.id)], collisions=True)
+    journal.append([decision], collisions=True)
+    journal.append(
+        [journal.decision(record, SUM, 0.5, who="Ben", after=decision.id)], collisions=True
+    )
     (tmp_path / "roster.csv").write_text("student,name\nada,ada\nbenjamin,ben\ncem,cem\n")
     write_term(out, tmp_path / "roster.csv", {"essays": ["essays"]})
     grade_quietly(begun / "in", out.folder, begun / "solutions")
-    found = out.read("benjamin", "essays").marks[SUM]
-    assert (found.points, [one["state"] for one in found.appeals]) == (1, ["accepted"])
+    mark = out.read("benjamin", "essays").marks[SUM]
+    assert (mark.points, [appeal["state"] for appeal in mark.appeals]) == (1, ["accepted"])
     again = Journal(out.folder)
     again.take_back([out.read("benjamin", "essays")], SUM, "Ben")
     assert again.standing().decisions["benjamin", "essays", SUM].credit == 1
@@ -305,7 +310,7 @@ def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_p
         clusters = set(re.findall(r"answer/([0-9a-f]{16})", text))
         assert len(clusters) == 2
         pages = "".join(
-            served.ask(f"/{served.secret}/answer/{one}?show=earlier")[1] for one in clusters
+            served.ask(f"/{served.secret}/answer/{answer}?show=earlier")[1] for answer in clusters
         )
         assert (
             "The question has changed since Ann decided" in pages
@@ -353,7 +358,10 @@ def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_pat
         shown[lines.index(says)], shown[lines.index("is polite")] = "0.5", "1"
         fields = zip(lines, shown, steps, strict=True)
         body = "&".join(
-            ["form=worths", *(form(line=line, points=one, step=step) for line, one, step in fields)]
+            [
+                "form=worths",
+                *(form(line=line, points=points, step=step) for line, points, step in fields),
+            ]
         )
         assert served.decide(cluster.id, body).status == 303
         body = body.replace("points=0.5", "points=0.75")
@@ -378,7 +386,7 @@ def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_pat
         for move in regrade(out.folder, solutions=mended, dry_run=True).moves
         for change in move.changes
     ]
-    assert {one.student: (one.before, one.after) for one in changes} == {
+    assert {change.student: (change.before, change.after) for change in changes} == {
         "ada": (2.5, 3), "ben": (1, 0), "cem": (1.5, 1.25)
     }  # fmt: skip
     regrade(out.folder, solutions=mended, show=io.StringIO())
@@ -400,13 +408,17 @@ def test_a_rubric_by_which_nobody_could_have_all_is_refused(tmp_path):
 
 def test_who_saw_another_decision_decided_later_whatever_the_clock_says(out):
     record, journal = out.read("ben", "essays"), Journal(out.folder)
-    one = journal.decision(record, SUM, 0.5, who="Ann")
+    first = journal.decision(record, SUM, 0.5, who="Ann")
     other = replace(
-        journal.decision(record, SUM, 1, who="Ben", after=one.id),
+        journal.decision(record, SUM, 1, who="Ben", after=first.id),
         when="2020-01-01T00:00:00.000000+00:00",
     )
-    third = replace(journal.decision(record, SUM, 0, who="Cem", after=other.id), when=one.when)
-    for events, credit in (([one, other], 1), ([one, other, third], 0), ([third, other, one], 0)):
+    third = replace(journal.decision(record, SUM, 0, who="Cem", after=other.id), when=first.when)
+    for events, credit in (
+        ([first, other], 1),
+        ([first, other, third], 0),
+        ([third, other, first], 0),
+    ):
         journal.path.unlink(missing_ok=True)
         Journal(out.folder).append(events)
         assert Journal(out.folder).standing().decisions["ben", "essays", SUM].credit == credit

@@ -189,9 +189,9 @@ def aftermath():
     process.start()
     sender.close()
     with receiver:
-        found = receiver.recv()
+        sent = receiver.recv()
     process.join()
-    return found
+    return sent
 
 
 @pytest.mark.parametrize("attack", ATTACKS, ids=lambda attack: attack.name)

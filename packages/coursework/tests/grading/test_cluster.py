@@ -269,8 +269,8 @@ def test_a_cluster_listens_to_those_alone_who_have_its_key(tmp_path, submissions
             )
         grade(submissions, tmp_path / "there", running=running(keys=keys), **options)
     grade(submissions, tmp_path / "here", running=Running(limits=LIMITS), **options)
-    one, two = ((tmp_path / place / "grades.csv").read_bytes() for place in ("there", "here"))
-    assert one == two
+    there, here = ((tmp_path / place / "grades.csv").read_bytes() for place in ("there", "here"))
+    assert there == here
 
 
 @pytest.mark.parametrize(

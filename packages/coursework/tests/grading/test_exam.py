@@ -73,8 +73,8 @@ def test_what_students_receive_would_be_the_same_with_another_answer(tmp_path):
     assert (
         len(
             {
-                (released(tmp_path / f"{n}", one, local).sealed / "trial.json").read_bytes()
-                for n, one in enumerate((SOLUTION, other))
+                (released(tmp_path / f"{n}", solution, local).sealed / "trial.json").read_bytes()
+                for n, solution in enumerate((SOLUTION, other))
             }
         )
         == 2
@@ -98,11 +98,11 @@ def test_the_check_takes_an_answer_down_and_tells_nothing_of_it(exam):
 
 
 def test_the_selftest_is_content_and_finds_nothing_to_guess(exam):
-    found = selftest.try_question(
+    finding = selftest.try_question(
         release.read_source(exam.sources / "trial.ipynb").questions["trial/about-x"]
     )
-    assert found.faults == [] and found.possible is None
-    assert [note for note, _ in found.mistakes if note == "transposed"]
+    assert finding.faults == [] and finding.possible is None
+    assert [note for note, _ in finding.mistakes if note == "transposed"]
 
 
 def test_the_grader_marks_what_the_check_only_took_down(exam, tmp_path):
@@ -167,10 +167,10 @@ def test_a_function_finds_in_its_callers_frames_only_what_the_exam_gave_it(tmp_p
     put(tmp_path / "handed-in", "ada", notebook(cells), "trial.ipynb")
     grade(tmp_path / "handed-in", tmp_path / "out", solutions=course.sources, show=io.StringIO())
     record = Store(tmp_path / "out").read("ada", "trial")
-    found = record.answer("trial/what").plain["value"][1]
+    seen = record.answer("trial/what").plain["value"][1]
     assert record.marks["trial/twice"].outcome == "correct"
     (questions_of,) = (tmp_path / "out" / "questions").glob("trial-*.json")
     (about,) = json.loads(questions_of.read_text("utf8"))["trial/twice"]
-    assert "1.25" in found and about["secret"]["calls"]
+    assert "1.25" in seen and about["secret"]["calls"]
     for ((argument,),) in zip(about["secret"]["calls"], strict=True):
-        assert str(argument) not in found
+        assert str(argument) not in seen

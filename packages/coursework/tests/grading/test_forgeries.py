@@ -60,22 +60,22 @@ def test_nothing_is_given_to_anybody_else(tmp_path, attack, in_archive):
     notebooks, refused = intake.take_in(
         lay_out(tmp_path, attack, in_archive), ["turns", "axes"], roster
     )
-    found = {one.file: one.student for one in notebooks}
+    owners = {notebook.file: notebook.student for notebook in notebooks}
     if attack.asked:
-        assert found == {}
-        why = {one.file: one.why for one in refused}
+        assert owners == {}
+        why = {refusal.file: refusal.why for refusal in refused}
         assert all(
             why[name].endswith((intake.CLAIMED_TWICE, intake.NOT_MATCHED))
             for name in attack.handed_in
         ), why
     else:
         leading_out = {name for name in attack.handed_in if "/../" in name}
-        assert found == {
+        assert owners == {
             name: owner for name, owner in attack.handed_in.items() if name not in leading_out
         }
         # A notebook that cannot be matched to anybody is reported, not silently left out.
         nobodys = {name for name in attack.also if name.endswith(".ipynb")}
-        assert leading_out | nobodys <= {one.file for one in refused}
+        assert leading_out | nobodys <= {refusal.file for refusal in refused}
 
 
 # ---- answers
@@ -270,10 +270,10 @@ def test_at_least_so_many_kinds_have_been_tried():
     by_names, by_answers, by_deceit = (
         names.ATTACKS,
         answers.ATTACKS,
-        [one for one in corpus.ATTACKS if one.forges],
+        [attack for attack in corpus.ATTACKS if attack.forges],
     )
     for kinds in (by_names, by_answers, by_deceit, corpus.ATTACKS):
-        assert len({one.name for one in kinds}) == len(kinds)
+        assert len({attack.name for attack in kinds}) == len(kinds)
     assert (
         len(by_names) >= 45,
         len(by_answers) >= 40,

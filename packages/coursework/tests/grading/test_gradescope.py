@@ -37,7 +37,7 @@ def machine(tmp_path_factory):
     assert (place / "autograder.zip").stat().st_mode & 0o077 == 0
     with zipfile.ZipFile(place / "autograder.zip") as archive:
         archive.extractall(home / "source")
-        modes = {one.filename: one.external_attr >> 16 & 0o777 for one in archive.infolist()}
+        modes = {entry.filename: entry.external_attr >> 16 & 0o777 for entry in archive.infolist()}
     assert modes["setup.sh"] == modes["run_autograder"] == 0o755
     for name in ("setup.sh", "run_autograder"):
         subprocess.run(["bash", "-n", home / "source" / name], check=True)
@@ -135,10 +135,10 @@ except OSError:
 @needs_a_machine
 def test_a_submission_gets_its_results_or_the_reason_why_not(machine):
     results = graded(machine, handed_in(sum="sine = -sm.sin(alpha + beta)"))
-    assert results["score"] == 5 and [one["score"] for one in results["tests"]] == [2, 0, 3]
-    assert [one["max_score"] for one in results["tests"]] == [2, 1, 3]
-    assert [one["status"] for one in results["tests"]] == ["passed", "failed", "passed"]
-    assert {one["visibility"] for one in results["tests"]} == {"visible"}
+    assert results["score"] == 5 and [test["score"] for test in results["tests"]] == [2, 0, 3]
+    assert [test["max_score"] for test in results["tests"]] == [2, 1, 3]
+    assert [test["status"] for test in results["tests"]] == ["passed", "failed", "passed"]
+    assert {test["visibility"] for test in results["tests"]} == {"visible"}
     undecided = graded(machine, handed_in(sum="sine = sm.sin(alpha + beta)*1.0004"))["tests"][1]
     assert "status" not in undecided and "undecided" in undecided["output"]
     # Nothing of this working copy took part.

@@ -183,25 +183,25 @@ def outcomes(course, student):
 )
 def test_marks(course, student, expected, points):
     assert outcomes(course, student) == expected
-    found = record(course, student)
-    assert (found.points, found.worth) == (points, 6)
+    graded = record(course, student)
+    assert (graded.points, graded.worth) == (points, 6)
 
 
 def test_a_record_says_what_it_rests_on(course):
-    found = record(course, "endless")
+    graded = record(course, "endless")
     written = (course / "submissions" / "endless" / "turns.ipynb").read_bytes()
-    (one,) = found.notebooks
-    assert one.sha256 == hashlib.sha256(written).hexdigest()
-    assert one.isolation.layers and one.isolation.weak is False and one.seed == 0
-    assert [cell.outcome for cell in one.cells][3] == "timeout"
-    assert found.limits == dataclasses.asdict(LIMITS)
-    assert set(found.software) >= {"python", "sympy", "numpy", "coursework"}
+    (notebook,) = graded.notebooks
+    assert notebook.sha256 == hashlib.sha256(written).hexdigest()
+    assert notebook.isolation.layers and notebook.isolation.weak is False and notebook.seed == 0
+    assert [cell.outcome for cell in notebook.cells][3] == "timeout"
+    assert graded.limits == dataclasses.asdict(LIMITS)
+    assert set(graded.software) >= {"python", "sympy", "numpy", "coursework"}
     assert (
-        set(found.answers)
-        == set(found.marks)
+        set(graded.answers)
+        == set(graded.marks)
         == {name for name in RIGHT if name.startswith("turns/")}
     )
-    assert all(mark.version for mark in found.marks.values())
+    assert all(mark.version for mark in graded.marks.values())
 
 
 def test_out_of_order_is_said(course):
@@ -414,17 +414,17 @@ def test_identical_wrong_answers_are_put_together(tmp_path, course):
     def report(*groups):
         store = Store(tmp_path)
         for number, group in enumerate(groups):
-            found = record(course, "right")
+            graded = record(course, "right")
             mark = replace(
-                found.marks["turns/sum"], outcome="wrong", note="", group=group, points=0
+                graded.marks["turns/sum"], outcome="wrong", note="", group=group, points=0
             )
             give(
                 store,
                 replace(
-                    found,
+                    graded,
                     student=f"student-{number}",
-                    marks={**found.marks, "turns/sum": mark},
-                    answers={**found.answers, "turns/sum": Answer("recorded", plain)},
+                    marks={**graded.marks, "turns/sum": mark},
+                    answers={**graded.answers, "turns/sum": Answer("recorded", plain)},
                 ),
             )
         write_all(store)
@@ -440,11 +440,11 @@ def test_reports_hold_one_record_at_a_time(tmp_path, course, monkeypatch):
     def all_of_them(store):
         nonlocal most
         for number in range(300):
-            found = replace(record(course, "right"), student=f"student-{number}")
-            made.append(weakref.ref(found))
-            most = max(most, sum(one() is not None for one in made))
-            yield found
-            del found
+            graded = replace(record(course, "right"), student=f"student-{number}")
+            made.append(weakref.ref(graded))
+            most = max(most, sum(reference() is not None for reference in made))
+            yield graded
+            del graded
 
     monkeypatch.setattr(Store, "all", all_of_them)
     write_all(Store(tmp_path))
@@ -548,7 +548,7 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
         "'b' is now 'somebody'" in shown.getvalue()
         and "1 decision to the new name" in shown.getvalue()
     )
-    handed_on = {one.student: one for one in Journal(copied).by_people}
+    handed_on = {decision.student: decision for decision in Journal(copied).by_people}
     assert (handed_on["somebody"].who, handed_on["somebody"].why) == ("Ann", "appeal; was 'b'")
     assert handed_on["somebody"].when == handed_on["b"].when
     # Somebody who left the roster has not become the other student who handed in the same.
@@ -571,12 +571,12 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
 
 
 def test_a_journal_of_other_answers_is_said(course, copied, capsys, tmp_path):
-    found = Store(copied).read("mistaken", "turns")
+    mistaken = Store(copied).read("mistaken", "turns")
     (tmp_path / "other").mkdir()
     other = Journal(tmp_path / "other")
-    other.add(found, "turns/sum", 1)
-    other.add(replace(found, student="stranger"), "turns/sum", 1)
-    other.add(replace(found, answers={}), "turns/about-x", 1)
+    other.add(mistaken, "turns/sum", 1)
+    other.add(replace(mistaken, student="stranger"), "turns/sum", 1)
+    other.add(replace(mistaken, answers={}), "turns/about-x", 1)
     main(["merge", str(copied), str(other.path), "--yes"])
     said = capsys.readouterr().out
     assert (
@@ -632,10 +632,12 @@ def test_feedback_leads_to_the_chapter_and_to_a_solution_that_is_released(course
 
 def test_feedback_gives_no_outputs_of_calls_away(course):
     """A function's results would help a friend, and those of the secret calls everybody later."""
-    found = record(course, "right").answers["turns/doubled"]
-    assert found.plain["value"][0] == found.secret["plain"]["value"][0] == "function"
+    answer = record(course, "right").answers["turns/doubled"]
+    assert answer.plain["value"][0] == answer.secret["plain"]["value"][0] == "function"
     said = page(course, "right")
-    numbers = [node[1] for plain in (found.plain, found.secret["plain"]) for node in plain["nodes"]]
+    numbers = [
+        node[1] for plain in (answer.plain, answer.secret["plain"]) for node in plain["nodes"]
+    ]
     assert len(numbers) == 5 and not [number for number in numbers if number[:6] in said]
     assert "in place of" not in page(course, "blank") and "Nothing was answered." in page(
         course, "blank"
@@ -688,10 +690,10 @@ def test_what_dies_under_a_notebook_costs_only_that_one(
         "show": io.StringIO(),
     }
     assert grade(tmp_path / "few", prepared, **options)["graded"] == 9
-    for found in Store(prepared).all():
-        expected = "undecided" if found.student == "student-4" else "not attempted"
-        assert {mark.outcome for mark in found.marks.values()} == {expected}
-        assert (found.notebooks[0].isolation.given_up is not None) == (expected == "undecided")
+    for graded in Store(prepared).all():
+        expected = "undecided" if graded.student == "student-4" else "not attempted"
+        assert {mark.outcome for mark in graded.marks.values()} == {expected}
+        assert (graded.notebooks[0].isolation.given_up is not None) == (expected == "undecided")
     assert len(graded_lines(prepared)) == len(set(graded_lines(prepared))) == 9
     # A machine failure leaves no final record, so only that notebook is retried.
     assert grade(tmp_path / "few", prepared, **options)["graded"] == 1
@@ -941,9 +943,9 @@ def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
     text = "Tunniste,Koko nimi,Numero,Arvosana,Paras\nOsallistuja9,A,right,,6\nbroken,B,,,6\n"
     with pytest.raises(
         gradebooks.CannotExport, match=r"German, .*\[gradebook\], and below it identifier = "
-    ) as found:
+    ) as caught:
         fill(tmp_path, marks, text)
-    assert "This file has the columns Tunniste, Koko nimi" in str(found.value)
+    assert "This file has the columns Tunniste, Koko nimi" in str(caught.value)
     names = {
         "identifier": "Tunniste",
         "full name": "Koko nimi",
@@ -1203,11 +1205,11 @@ def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course, mo
     expected = json.loads((tmp_path / "class" / "expected.json").read_text())
     store, compared = Store(tmp_path / "out"), 0
     for student, about in expected.items():
-        found = store.read(student, "homework")
+        graded = store.read(student, "homework")
         refused = about["did"] in BROKEN
-        assert (found is None) == refused, about["did"]
+        assert (graded is None) == refused, about["did"]
         for name, (outcome, note) in ({} if refused else about["questions"]).items():
-            mark = found.marks[name]
+            mark = graded.marks[name]
             if about["did"] in HOSTILE:
                 # It may have spoilt its own answers, but gained nothing.
                 assert not mark.points or outcome != "not attempted"

@@ -136,10 +136,12 @@ def test_hostile_answers_leave_every_other_mark(questions, tmp_path):
     dice = random.Random("hostile")
     hostile = [_tower(dice, what) for what in HOSTILE]
     honest = [to_plain(sm.sin(alpha + beta)), to_plain(-sm.sin(alpha + beta))]
-    found = list(judged([one for bad in hostile for one in (bad, *honest)], questions, tmp_path))
-    assert [mark.outcome for mark in found[1::3]] == ["correct"] * len(hostile)
-    assert [mark.note for mark in found[2::3]] == ["opposite"] * len(hostile)
-    assert not any(mark.points for mark in found[::3])
+    marks = list(
+        judged([answer for bad in hostile for answer in (bad, *honest)], questions, tmp_path)
+    )
+    assert [mark.outcome for mark in marks[1::3]] == ["correct"] * len(hostile)
+    assert [mark.note for mark in marks[2::3]] == ["opposite"] * len(hostile)
+    assert not any(mark.points for mark in marks[::3])
 
 
 # --- crashes ------------------------------------------------------------------------------------
@@ -288,11 +290,11 @@ def test_whenever_it_is_killed_the_same_comes_of_it(whole, tmp_path_factory, run
             assert _contents(other / "out") == _contents(whole / "out"), what
             continue
         # Whatever somebody was told is there, once; a line cut off does not stop anything.
-        kept = [one.id for one in Journal(other / "out").events]
+        kept = [event.id for event in Journal(other / "out").events]
         assert len(kept) == len(set(kept)) and set(said) <= set(kept)
         whole_ledger = Journal(whole / "out")
-        assert [one.id for one in whole_ledger.by_people] == expected
-        decided = [one for one in whole_ledger.by_people if isinstance(one, Decision)]
+        assert [event.id for event in whole_ledger.by_people] == expected
+        decided = [event for event in whole_ledger.by_people if isinstance(event, Decision)]
         assert len(decided) == sum(len(record.marks) for record in Store(whole / "out").all())
         shutil.copy(whole / "out" / "journal.jsonl", other / "out" / "journal.jsonl")
         (other / "out" / "journal.cut").unlink(missing_ok=True)

@@ -91,7 +91,9 @@ def begun(tmp_path_factory):
     place = tmp_path_factory.mktemp("cases")
     solutions = write_beams(place / "solutions", WEIGHTS)
     questions = questions_of(solutions / "beams.ipynb", b"any")
-    given = [one.question.given["weight"] for one in variants_of(questions[NAME]).values()]
+    given = [
+        contract.question.given["weight"] for contract in variants_of(questions[NAME]).values()
+    ]
     own = {student: given[variant_of(student, NAME, 8)] for student in STUDENTS}
     for student in STUDENTS:
         put(place / "in", student, answered(2 * own[student], says=student), "beams.ipynb")
@@ -113,9 +115,9 @@ def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
     """Results were once compared by position, so all right functions fell from 3 to 0."""
     fewer = write_beams(tmp_path / "fewer", WEIGHTS, "[[0.25], [1.5]]")
     regrade(out.folder, solutions=fewer)
-    found = marks_of(out, "beams/twice").values()
+    marks = marks_of(out, "beams/twice").values()
     # The current calls were all made then, but other calls also change the secret ones.
-    assert {(mark.outcome, mark.note) for mark in found} <= {
+    assert {(mark.outcome, mark.note) for mark in marks} <= {
         ("correct", ""),
         ("undecided", "not called"),
     }
@@ -171,8 +173,8 @@ def test_small_numbers_with_long_exponents_cost_neither_time_nor_memory():
         evaluate=False,
     )
     read_plain(to_plain(tiny))
-    found = evaluate.values(to_plain(tiny)["nodes"], {})[-1]
-    assert isinstance(found, (evaluate.NotSupported, evaluate.MP.mpf, evaluate.MP.mpc))
+    value = evaluate.values(to_plain(tiny)["nodes"], {})[-1]
+    assert isinstance(value, (evaluate.NotSupported, evaluate.MP.mpf, evaluate.MP.mpc))
     for text in ("1e-99999999999999999999", "3.5e+99999999999999999999", "1e-2000"):
         # The reason must not be "no answer was found".
         plain = read_plain({"value": ["expression", 0], "nodes": [["float", text]]})
@@ -233,9 +235,9 @@ def test_an_answer_that_stops_the_judge_costs_nobody_else_a_mark(monkeypatch, tm
         {"turns": dict.fromkeys(names, question)}, Contracts(tmp_path), said.append
     ) as judge:
         for _ in range(2):
-            found = judge.marks(record)
-            assert [found[name].outcome for name in names] == ["correct", "undecided", "correct"]
-            assert found["second"].note == "too much work" and found["second"].worth == 2
+            marks = judge.marks(record)
+            assert [marks[name].outcome for name in names] == ["correct", "undecided", "correct"]
+            assert marks["second"].note == "too much work" and marks["second"].worth == 2
     assert len(said) == 2 and "'ann' turns second" in said[0]
 
 
@@ -268,7 +270,7 @@ def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun,
     assert lost < 3 or f"{lost} of 6 answers are right for numbers other" in said.getvalue()
     roster = tmp_path / "roster.csv"
     roster.write_text(
-        "student,handed in as\n" + "".join(f"{one},folder of {one}\n" for one in STUDENTS[:6])
+        "student,handed in as\n" + "".join(f"{who},folder of {who}\n" for who in STUDENTS[:6])
     )
     write_term(tmp_path / "out", roster, {"beams": ["beams"]})
     grade_quietly(tmp_path / "in", tmp_path / "out", solutions)
@@ -295,11 +297,11 @@ def test_a_journal_that_ends_within_a_line_is_read_and_goes_on(tmp_path, left):
     second = whole.split(b"\n")[1]
     path.write_bytes(whole[: len(whole) - 1 - len(second)] + second[:left])
     again = Journal(tmp_path)
-    assert [one.who for one in again.by_people] == [
+    assert [decision.who for decision in again.by_people] == [
         "Ann"
     ] and "ends in the middle of a line" in again.said_of_cut()
     again.add(RECORD, "turns/sum", 0, who="Cem")
-    assert [one.who for one in Journal(tmp_path).by_people] == [
+    assert [decision.who for decision in Journal(tmp_path).by_people] == [
         "Ann",
         "Cem",
     ] and not again.said_of_cut()
@@ -308,7 +310,7 @@ def test_a_journal_that_ends_within_a_line_is_read_and_goes_on(tmp_path, left):
     path.write_bytes(whole[:-1])
     assert len(Journal(tmp_path).by_people) == 2 and not Journal(tmp_path).said_of_cut()
     Journal(tmp_path).add(RECORD, "turns/sum", 0, who="Cem")
-    assert [one.who for one in Journal(tmp_path).by_people] == ["Ann", "Ben", "Cem"]
+    assert [decision.who for decision in Journal(tmp_path).by_people] == ["Ann", "Ben", "Cem"]
 
 
 def test_names_that_are_to_be_hidden_are_hidden_in_what_students_wrote(begun, out):
@@ -462,16 +464,16 @@ def test_a_course_that_gives_variants_by_name_says_so_to_students_and_graders(tm
     question = questions_of(sources / "beams.ipynb", b"any")[NAME]
     names = list(question[0].variant.names)
     assert list(variants_of(question)) == names and len(names) == 8
-    for one in STUDENTS:
-        order = numbers_of_variants(one, NAME, question[0].variant, 8)
-        case = case_by_rule(NAME, question, one)
+    for student in STUDENTS:
+        order = numbers_of_variants(student, NAME, question[0].variant, 8)
+        case = case_by_rule(NAME, question, student)
         assert case.own.variant == names[order[0]] and case.rule == "by name, of 8"
         assert [place.variant for place in case.siblings.values()] == [names[k] for k in order[1:3]]
     left = write_beams(tmp_path / "solutions", WEIGHTS[1:])
     fewer = questions_of(left / "beams.ipynb", b"any")[NAME]
     gone = (set(names) - set(fewer[0].variant.names)).pop()
-    for one in STUDENTS:
-        before, after = case_by_rule(NAME, question, one), case_by_rule(NAME, fewer, one)
+    for student in STUDENTS:
+        before, after = case_by_rule(NAME, question, student), case_by_rule(NAME, fewer, student)
         assert before.own.variant in (gone, after.own.variant)
     (tmp_path / "course.toml").write_text('title = "Beams"\nvariants = "by chance"\n')
     with pytest.raises(AuthorError, match="by name"):
@@ -496,11 +498,11 @@ def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
     assert grade_quietly(begun.place / "in", out.folder, solutions)["graded"] == 0
     assert {mark.points for mark in marks_of(out, NAME).values()} == {0}
     calls = mended(tmp_path / "calls", ("2*x", "x + x"), calls="[[7.5], [1.5]]")
-    found = regrade(out.folder, solutions=calls, dry_run=True)
-    assert {one.student for one in found.again} == {
+    laboratory = regrade(out.folder, solutions=calls, dry_run=True)
+    assert {move.student for move in laboratory.again} == {
         *STUDENTS,
         "wrong",
-    } and "To judge just these, run" in "\n".join(found.lines())
+    } and "To judge just these, run" in "\n".join(laboratory.lines())
     few = shutil.copytree(begun.place / "in" / STUDENTS[0], tmp_path / "few" / STUDENTS[0]).parent
     assert grade_quietly(few, out.folder, calls)["graded"] == 1
     assert out.read(STUDENTS[0], "beams").marks["beams/twice"].points == 3
@@ -516,7 +518,7 @@ def test_the_figure_of_a_question_is_seen_in_the_review(tmp_path):
     made.cells.insert(2, nbformat.v4.new_code_cell(figure, metadata={"tags": ["figure"]}))
     made.cells.insert(7, nbformat.v4.new_code_cell(figure, metadata={"tags": ["figure"]}))
     nbformat.write(made, tmp_path / "beams.ipynb")
-    found = questions_of(tmp_path / "beams.ipynb", b"any")
-    asked = [review._as_asked(found[name][0]) for name in (NAME, "beams/twice")]
-    assert all('<img alt="A beam"' in one for one in asked)
+    questions = questions_of(tmp_path / "beams.ipynb", b"any")
+    asked = [review._as_asked(questions[name][0]) for name in (NAME, "beams/twice")]
+    assert all('<img alt="A beam"' in text for text in asked)
     assert "A beam carries 12 N" in asked[0] or "N twice" in asked[0]

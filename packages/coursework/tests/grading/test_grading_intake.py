@@ -38,8 +38,8 @@ def folder(tmp_path):
 def the_refused(path):
     """Return the reason for each refusal; the neighbour's notebook must be read nevertheless."""
     notebooks, refused = intake.take_in(path, ["turns"])
-    assert [one.student for one in notebooks] == ["neighbour"]
-    return {one.file: one.why for one in refused}
+    assert [notebook.student for notebook in notebooks] == ["neighbour"]
+    return {refusal.file: refusal.why for refusal in refused}
 
 
 def archive(path, *entries):
@@ -118,16 +118,16 @@ def test_whose_a_notebook_is(tmp_path, name, student, identity, late, packed):
         path = tmp_path / "submissions"
         (path / name).parent.mkdir(parents=True)
         (path / name).write_bytes(GOOD)
-    (found,), refused = intake.take_in(path, ["turns"])
-    assert (found.student, found.identity.called, found.late) == (student, identity, late)
-    assert found.digest == hashlib.sha256(GOOD).hexdigest()
+    (notebook,), refused = intake.take_in(path, ["turns"])
+    assert (notebook.student, notebook.identity.called, notebook.late) == (student, identity, late)
+    assert notebook.digest == hashlib.sha256(GOOD).hexdigest()
     assert refused == []
 
 
 def test_two_numbers_in_a_students_own_file_are_not_taken_for_canvas(folder):
     for name in ("homework_1_2_final.ipynb", "turns.ipynb", "more.ipynb"):
         (folder / "neighbour" / name).write_bytes(GOOD)
-    assert {one.student for one in intake.take_in(folder)[0]} == {"neighbour"}
+    assert {notebook.student for notebook in intake.take_in(folder)[0]} == {"neighbour"}
 
 
 def named(*names, **options):
@@ -137,7 +137,9 @@ def named(*names, **options):
         for name in names:
             box.writestr(name, options.get("data", GOOD))
     notebooks, refused = intake.take_in(path, ["turns", "axes"], options.get("roster"))
-    return {one.file: one.student for one in notebooks}, {one.file: one.why for one in refused}
+    return {notebook.file: notebook.student for notebook in notebooks}, {
+        refusal.file: refusal.why for refusal in refused
+    }
 
 
 @pytest.fixture
@@ -227,25 +229,31 @@ def test_names_as_the_systems_write_them(tmp_path, around):
                     "assignment_9100_export/submission_41/submission_metadata.yml", GRADESCOPE[::-1]
                 )
         notebooks, refused = intake.take_in(box, ["turns"])
-        found = {
-            one.file.removeprefix(around): (one.student, one.claim.handed_in, one.late)
-            for one in notebooks
+        taken = {
+            notebook.file.removeprefix(around): (
+                notebook.student,
+                notebook.claim.handed_in,
+                notebook.late,
+            )
+            for notebook in notebooks
         }
-        assert found == names
+        assert taken == names
         # A group's submission needs a person, and so does a table that only resembles the system's.
-        unknown = {one.file for one in refused}
+        unknown = {refusal.file for refusal in refused}
         assert unknown == (
             {"assignment_9100_export/submission_43/turns.ipynb"} if sign == "export/" else set()
         )
 
 
 def test_a_folder_around_everything_is_no_student(box):
-    found, _ = named("homework/jane/turns.ipynb", "homework/bob/turns.ipynb", path=box)
-    assert sorted(found.values()) == ["bob", "jane"]
-    found, _ = named("all/jane_1_2_turns.ipynb", "all/bob_3_4_turns.ipynb", path=box)
-    assert sorted(found.values()) == ["bob_3", "jane_1"]
-    found, _ = named("course/submitted/jane/turns/a.ipynb", "course/source/turns/a.ipynb", path=box)
-    assert list(found.values()) == ["jane"]
+    students, _ = named("homework/jane/turns.ipynb", "homework/bob/turns.ipynb", path=box)
+    assert sorted(students.values()) == ["bob", "jane"]
+    students, _ = named("all/jane_1_2_turns.ipynb", "all/bob_3_4_turns.ipynb", path=box)
+    assert sorted(students.values()) == ["bob_3", "jane_1"]
+    students, _ = named(
+        "course/submitted/jane/turns/a.ipynb", "course/source/turns/a.ipynb", path=box
+    )
+    assert list(students.values()) == ["jane"]
 
 
 def test_what_a_system_adds_is_no_refusal(box):
@@ -256,10 +264,10 @@ def test_what_a_system_adds_is_no_refusal(box):
         for end in ("_a.ipynb", ".txt")
     ]
     text_only = "HW_eve_attempt_2026-11-20-10-11-13.txt"
-    found, refused = named(
+    students, refused = named(
         *blackboard, text_only, "HW_bob_attempt_2026-11-20-10-11-12_notes.txt", path=box
     )
-    assert sorted(found.values()) == ["ann", "bob"]
+    assert sorted(students.values()) == ["ann", "bob"]
     # Students who handed in only a text are reported, and so is a student's own text.
     assert sorted(refused) == ["HW_bob_attempt_2026-11-20-10-11-12_notes.txt", text_only]
     folders = [f"{place}/turns/turns.ipynb" for place in ("source", "release")]
@@ -268,10 +276,12 @@ def test_what_a_system_adds_is_no_refusal(box):
         for place in ("autograded", "feedback")
         for end in ("ipynb", "html")
     ]
-    found, refused = named(
+    students, refused = named(
         "submitted/ann/turns/turns.ipynb", "submitted/ann/turns/answer.pdf", *folders, path=box
     )
-    assert list(found.values()) == ["ann"] and list(refused) == ["submitted/ann/turns/answer.pdf"]
+    assert list(students.values()) == ["ann"] and list(refused) == [
+        "submitted/ann/turns/answer.pdf"
+    ]
     assert "notebook in the same folder can read it" in refused["submitted/ann/turns/answer.pdf"]
     around = [f"course/{name}" for name in ("submitted/ann/turns/turns.ipynb", *folders)]
     assert named(*around, path=box)[1] == {}
@@ -295,7 +305,9 @@ def test_what_lies_beside_a_notebook_has_the_name_that_its_author_gave_it(box, t
         for name in files:
             opened.writestr(name, GOOD if name.endswith("ipynb") else name.encode())
     notebooks, refused = intake.take_in(box, ["turns"])
-    jane, bob = (one.files for one in sorted(notebooks, key=lambda one: one.student))
+    jane, bob = (
+        notebook.files for notebook in sorted(notebooks, key=lambda notebook: notebook.student)
+    )
     assert jane["half.py"] == jane["half-2.py"] == b"doejane_101_6_half-2.py" and "data.npy" in jane
     assert (
         bob["part.py"].endswith(b"part.py") and bob["x.csv"].endswith(b"x-10.csv") and refused == []
@@ -303,8 +315,8 @@ def test_what_lies_beside_a_notebook_has_the_name_that_its_author_gave_it(box, t
     for name in ("turns.ipynb", "helper.py", "data/numbers.csv"):
         (tmp_path / "flat" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "flat" / name).write_bytes(GOOD if name.endswith("ipynb") else b"1")
-    (found,), refused = intake.take_in(tmp_path / "flat", ["turns"], student="ann")
-    assert set(found.files) == {"helper.py", "data/numbers.csv"} and refused == []
+    (notebook,), refused = intake.take_in(tmp_path / "flat", ["turns"], student="ann")
+    assert set(notebook.files) == {"helper.py", "data/numbers.csv"} and refused == []
 
 
 @pytest.mark.parametrize("place", ["all", "lone/turns.ipynb", "lone"])
@@ -328,14 +340,16 @@ def test_github_classroom(tmp_path):
         (tmp_path / f"homework-1-{user}" / ".git" / "objects" / "00ab").write_bytes(b"x")
         (tmp_path / f"homework-1-{user}" / "README.md").write_text("read me")
     notebooks, refused = intake.take_in(tmp_path, ["turns"])
-    assert sorted(one.student for one in notebooks) == ["bob", "jane-doe"] and refused == []
+    assert (
+        sorted(notebook.student for notebook in notebooks) == ["bob", "jane-doe"] and refused == []
+    )
 
 
 def test_anonymous_exports_and_archives_within(box):
-    found, refused = named(
+    students, refused = named(
         "anon_aB3dE_501_turns.ipynb", "LATE_anon_LATE1_502_turns.ipynb", path=box
     )
-    assert sorted(found.values()) == ["anonymous_LATE1", "anonymous_aB3dE"]
+    assert sorted(students.values()) == ["anonymous_LATE1", "anonymous_aB3dE"]
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as inner:
         for name, content in (
@@ -355,12 +369,12 @@ def test_anonymous_exports_and_archives_within(box):
         ):
             outer.writestr(name, content)
     notebooks, refused = intake.take_in(box, ["turns"])
-    whose = {one.file: one for one in notebooks}
+    whose = {notebook.file: notebook for notebook in notebooks}
     packed = whose["jane_101_501_work.zip/bob_202_502_turns.ipynb"]
     assert packed.student == "jane_101" and packed.cells
     assert packed.files == {"data.csv": b"1,2", "exercises/data.csv": b"3,4"}
     assert whose["bob_202_503_turns.ipynb"].student == "bob_202"
-    why = {one.file: one.why for one in refused}
+    why = {refusal.file: refusal.why for refusal in refused}
     assert "leads out" in why["jane_101_501_work.zip/../../bob/turns.ipynb"]
     assert "cannot read" in why["eve_303_504_bad.zip"]
     assert "do not open this archive. Unpack it" in why["max_404_505_work.rar"]
@@ -398,9 +412,9 @@ CANVAS_BOOK = """Student,ID,SIS User ID,SIS Login ID,Section,Turns (4711)
 )
 def test_the_roster_alone_says_whose_a_notebook_is(box, tmp_path, name, student, how):
     (tmp_path / "book.csv").write_text(CANVAS_BOOK)
-    found, refused = named(name, path=box, roster=Roster(tmp_path / "book.csv"))
+    students, refused = named(name, path=box, roster=Roster(tmp_path / "book.csv"))
     notebooks, _ = intake.take_in(box, ["turns"], Roster(tmp_path / "book.csv"))
-    assert found == ({name: student} if student else {})
+    assert students == ({name: student} if student else {})
     assert how in (notebooks[0].matched if student else refused[name])
     if student:
         assert notebooks[0].identity.called["canvas"] in ("101", "202", "203")
@@ -426,10 +440,10 @@ def test_the_roster_alone_says_whose_a_notebook_is(box, tmp_path, name, student,
 def test_rosters_of_many_systems_are_read(box, tmp_path, text, name, student):
     (tmp_path / "roster.csv").write_text(text, "utf8")
     # Beside a number in the roster, a namesake's work with another number is nobody's.
-    found, _ = named(
+    students, _ = named(
         *{name, name.replace("_77_", "_98_")}, path=box, roster=Roster(tmp_path / "roster.csv")
     )
-    assert found == ({name: student} if student else {})
+    assert students == ({name: student} if student else {})
 
 
 @pytest.mark.parametrize(
@@ -461,11 +475,11 @@ def test_a_notebook_that_would_fill_the_memory_is_refused(folder):
 
 
 def test_a_notebook_that_is_changed_meanwhile_is_not_taken(folder):
-    (one,), _ = intake.take_in(folder)
-    assert one.cells == intake.read_notebook(GOOD)[0]
+    (notebook,), _ = intake.take_in(folder)
+    assert notebook.cells == intake.read_notebook(GOOD)[0]
     (folder / "neighbour" / "turns.ipynb").write_bytes(GOOD + b" ")
     with pytest.raises(intake.Unfit, match="changed"):
-        _ = one.cells
+        _ = notebook.cells
 
 
 # ---- refusals
@@ -718,11 +732,11 @@ def sorted_work(folder, course):
     notebooks, _ = intake.take_in(folder, course.assignments)
     work, refused, _ = pair(notebooks, [], course, Term(), Store(folder))
     return {
-        (one.student, one.assignment): (
-            [notebook.file for notebook in one.notebooks],
-            [notebook.file for notebook in one.superseded],
+        (entry.student, entry.assignment): (
+            [notebook.file for notebook in entry.notebooks],
+            [notebook.file for notebook in entry.superseded],
         )
-        for one in work
+        for entry in work
     }, refused
 
 
@@ -757,7 +771,7 @@ def test_an_assignment_in_several_notebooks_is_one(folder, tmp_path, course):
 
 
 @pytest.mark.parametrize(
-    "name, cells, found",
+    "name, cells, expected",
     [
         ("any.ipynb", ["check('turns/sum', 1)"], "turns"),
         (
@@ -770,14 +784,14 @@ def test_an_assignment_in_several_notebooks_is_one(folder, tmp_path, course):
         ("any.ipynb", ["check('turns/nothing', 1)"], None),
     ],
 )
-def test_which_assignment_a_notebook_is(folder, course, name, cells, found):
+def test_which_assignment_a_notebook_is(folder, course, name, cells, expected):
     (folder / "stranger").mkdir()
     (folder / "stranger" / name).write_text(nbformat.writes(notebook(cells)))
     work, refused = sorted_work(folder, course)
     assert [assignment for student, assignment in work if student == "stranger"] == (
-        [found] if found else []
+        [expected] if expected else []
     )
-    assert [one.file for one in refused] == ([] if found else [f"stranger/{name}"])
+    assert [refusal.file for refusal in refused] == ([] if expected else [f"stranger/{name}"])
 
 
 def test_nbgraders_names_tell_the_assignment_where_the_checks_are_gone(folder, course):

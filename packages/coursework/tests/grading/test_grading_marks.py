@@ -81,10 +81,10 @@ A_C_N = sm.Matrix(
     ],
 )
 def test_outcome_note_and_points(questions, name, answer, outcome, note, points):
-    found = mark(name, questions[name], given(answer))
-    assert (found.outcome, found.note, found.points) == (outcome, note, points)
-    assert found.worth == questions[name].contract.worth
-    assert (outcome == "correct") == (not found.messages)
+    marked = mark(name, questions[name], given(answer))
+    assert (marked.outcome, marked.note, marked.points) == (outcome, note, points)
+    assert marked.worth == questions[name].contract.worth
+    assert (outcome == "correct") == (not marked.messages)
 
 
 def test_functions_are_judged_by_what_they_return(questions):
@@ -97,8 +97,8 @@ def test_functions_are_judged_by_what_they_return(questions):
 
 
 def marks_of(questions, name, answer):
-    found = mark(name, questions[name], answer)
-    return found.outcome, found.note, found.points
+    marked = mark(name, questions[name], answer)
+    return marked.outcome, marked.note, marked.points
 
 
 def test_an_answer_that_is_right_only_where_the_check_looks_earns_nothing(questions):
@@ -159,8 +159,8 @@ def test_a_table_of_what_a_function_returned_is_no_function(questions):
         {"unreadable": CUT_SHORT[0]},
         {**given_function(question, lambda x: 2 * x).secret, "calls": "x"},
     ):
-        found = replace(given_function(question, lambda x: 2 * x), secret=said)
-        assert marks_of(questions, "turns/doubled", found) == ("undecided", "not called", 0)
+        answer = replace(given_function(question, lambda x: 2 * x), secret=said)
+        assert marks_of(questions, "turns/doubled", answer) == ("undecided", "not called", 0)
 
 
 def test_the_secret_is_made_once_and_decides_the_points(tmp_path, solutions):
@@ -171,11 +171,11 @@ def test_the_secret_is_made_once_and_decides_the_points(tmp_path, solutions):
     assert secret.secret_beside(tmp_path / "other") != first
     with pytest.raises(ValueError, match="It belongs beside the solutions"):
         secret.secret_beside(tmp_path / "nowhere")
-    one, same, other = (
+    questions, same, other = (
         questions_of(solutions / "turns.ipynb", known) for known in (b"one", b"one", b"other")
     )
-    assert one == same
-    for (first,), (second,) in zip(one.values(), other.values(), strict=True):
+    assert questions == same
+    for (first,), (second,) in zip(questions.values(), other.values(), strict=True):
         assert first.secret != second.secret and first.version != second.version
         assert first.secret.salt != first.question.salt
 
@@ -259,8 +259,8 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
                 said = Answer("recorded", json.loads(json.dumps(plain)))
                 if question.public.kind == "function" and plain == question.plain:
                     said = given_function(questions[name], question.answer)
-                found = mark(name, questions[name], said)
-                assert (found.outcome, found.note, found.messages) == (
+                marked = mark(name, questions[name], said)
+                assert (marked.outcome, marked.note, marked.messages) == (
                     reply.outcome,
                     reply.note,
                     tuple(reply.messages),
@@ -322,10 +322,10 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
 )
 def test_nothing_is_earned_without_an_answer(questions, answer, finished, outcome, note):
     limited = answer.pop("limited", False)
-    found = mark(
+    marked = mark(
         "turns/about-x", questions["turns/about-x"], Answer.from_json(answer), finished, limited
     )
-    assert (found.outcome, found.note, found.points) == (outcome, note, 0)
+    assert (marked.outcome, marked.note, marked.points) == (outcome, note, 0)
 
 
 def test_a_fault_of_ours_goes_to_a_person(questions, monkeypatch):
@@ -334,8 +334,8 @@ def test_a_fault_of_ours_goes_to_a_person(questions, monkeypatch):
 
     monkeypatch.setattr(marking, "_marked", {})
     monkeypatch.setattr(marking, "compare", fail)
-    found = mark("turns/about-x", questions["turns/about-x"], given(A_C_N))
-    assert (found.outcome, found.note, found.points) == ("undecided", "not worked out", 0)
+    marked = mark("turns/about-x", questions["turns/about-x"], given(A_C_N))
+    assert (marked.outcome, marked.note, marked.points) == ("undecided", "not worked out", 0)
 
 
 def test_the_sandbox_is_told_names_and_calls_and_nothing_else(questions):
@@ -376,8 +376,8 @@ def test_a_costly_answer_is_not_tried_on_every_variant(questions, judged):
         "nodes": [["symbol", "alpha"], *(["sin", order] for order in range(1_500))],
     }
     for plain, times in ((to_plain(sm.sin(alpha - beta)), 16), (long, 1)):
-        found = mark("turns/sum", question, Answer("recorded", plain, source="check", cell=1))
-        assert found.outcome == "wrong" and len(judged) == times
+        marked = mark("turns/sum", question, Answer("recorded", plain, source="check", cell=1))
+        assert marked.outcome == "wrong" and len(judged) == times
         judged.clear()
 
 

@@ -66,9 +66,9 @@ def result(
 ):
     worth = worth or {"turns": 6, "axes": 2}
     results, total = term.results_of(
-        student, {one.assignment: one for one in records}, rules, worth, now
+        student, {record.assignment: record for record in records}, rules, worth, now
     )
-    return {one.assignment: one for one in results}, total
+    return {result.assignment: result for result in results}, total
 
 
 @pytest.mark.parametrize(
@@ -87,9 +87,11 @@ def result(
     ],
 )
 def test_lateness_costs_what_the_rules_say(rules, when, penalty):
-    found, _ = result(rules(), record(6, when=when))
-    assert found["turns"].penalty == pytest.approx(penalty) and found["turns"].late == bool(penalty)
-    assert found["turns"].counts == pytest.approx(6 * (1 - penalty))
+    results, _ = result(rules(), record(6, when=when))
+    assert results["turns"].penalty == pytest.approx(penalty) and results["turns"].late == bool(
+        penalty
+    )
+    assert results["turns"].counts == pytest.approx(6 * (1 - penalty))
 
 
 @pytest.mark.parametrize(
@@ -117,18 +119,18 @@ def test_lateness_costs_what_the_rules_say(rules, when, penalty):
     ],
 )
 def test_days_and_hours_are_as_long_as_any_other_when_clocks_are_changed(rules, due, when, penalty):
-    found, _ = result(
+    results, _ = result(
         rules(RULES.replace("2026-10-25T02:30:00", due)), record(2, 2, when, assignment="axes")
     )
-    assert found["axes"].penalty == pytest.approx(penalty)
-    assert found["axes"].late == bool(penalty)
+    assert results["axes"].penalty == pytest.approx(penalty)
+    assert results["axes"].late == bool(penalty)
 
 
 def test_what_is_missing_counts_once_it_is_due(rules):
     half = record(3)
     assert result(rules(), half, now=datetime.datetime(2026, 10, 25, 1, 0, tzinfo=UTC))[1] == 0.5
-    found, total = result(rules(), half)
-    assert found["axes"].state == "missing" and total == pytest.approx(0.5 * 3 / 4)
+    results, total = result(rules(), half)
+    assert results["axes"].state == "missing" and total == pytest.approx(0.5 * 3 / 4)
     # Exercises that are worth nothing do not count, although they were graded.
     assert result(rules(), half, record(0, 0, assignment="axes"))[1] == 0.5
     # An assignment that was never graded counts for nobody.
@@ -144,19 +146,19 @@ def test_what_is_missing_counts_once_it_is_due(rules):
     ],
 )
 def test_a_systems_word_alone_costs_nothing_and_is_said(rules, text, when):
-    found, _ = result(rules(text), record(6, when=when, late=True))
-    assert found["turns"].late and found["turns"].penalty == 0
+    results, _ = result(rules(text), record(6, when=when, late=True))
+    assert results["turns"].late and results["turns"].penalty == 0
 
 
 def test_a_sitting_limits_what_homework_counts_in_the_course(rules):
-    found, _ = result(
+    results, _ = result(
         rules(RULES + '[assignments.quiz]\nquestions = ["turns/sum"]\nhomework-cap = 0.25\n'),
         record(6),
         replace(
             record(3, assignment="quiz"), marks={"turns/sum": Mark("decided", points=3, worth=6)}
         ),
     )
-    assert found["turns"].counts == 4.5
+    assert results["turns"].counts == 4.5
 
 
 def test_what_is_dropped_is_best_for_the_student(rules):
@@ -175,14 +177,16 @@ def test_what_is_dropped_is_best_for_the_student(rules):
         )
         shares = {name: dice.choice([0, 0.25, 0.5, 0.5, 0.9, 1]) for name in names}
         records = [record(share * 8, 8, assignment=name) for name, share in shares.items()]
-        found, total = result(rules(text), *records, worth=dict.fromkeys(names, 8))
+        results, total = result(rules(text), *records, worth=dict.fromkeys(names, 8))
         best = max(
             sum(weights[name] * shares[name] for name in kept) / sum(weights[name] for name in kept)
             for out in itertools.product(*(itertools.combinations(of, n) for n, of in drops))
             for kept in [set(names) - set(itertools.chain(*out))]
         )
         assert total == pytest.approx(best)
-        assert sum(one.state == "dropped" for one in found.values()) == sum(n for n, _ in drops)
+        assert sum(result.state == "dropped" for result in results.values()) == sum(
+            n for n, _ in drops
+        )
 
 
 @pytest.mark.parametrize(
@@ -233,9 +237,9 @@ def test_times_of_a_systems_table(rules, tmp_path):
     )
     text = RULES.replace("weight = 3", 'weight = 3\ntimes = "worksheet.csv"')
     for identity in ({"name": "Ann Lee"}, {"email": "ann@example.org"}):
-        found, _ = result(rules(text), record(6, identity=identity))
-        assert found["turns"].handed_in == datetime.datetime(2026, 10, 6, 20, 1, tzinfo=AMSTERDAM)
-        assert found["turns"].penalty == pytest.approx(0.1)
+        results, _ = result(rules(text), record(6, identity=identity))
+        assert results["turns"].handed_in == datetime.datetime(2026, 10, 6, 20, 1, tzinfo=AMSTERDAM)
+        assert results["turns"].penalty == pytest.approx(0.1)
     assert (
         result(rules(text), record(6, identity={"name": "Bob Lee"}))[0]["turns"].handed_in is None
     )
@@ -259,7 +263,9 @@ def test_times_are_those_of_the_system_and_no_students(tmp_path):
         with zipfile.ZipFile(path, "w") as box:
             for name, data in files:
                 box.writestr(name, data)
-        return {one.student: one.handed_in for one in intake.take_in(path, ["turns"])[0]}
+        return {
+            notebook.student: notebook.handed_in for notebook in intake.take_in(path, ["turns"])[0]
+        }
 
     stamp = b"2026-10-05 20:01:00.250000 UTC\n"
     assert times(
@@ -297,9 +303,9 @@ def test_times_are_those_of_the_system_and_no_students(tmp_path):
 def test_a_correlation_needs_enough_students_who_differ():
     dice = random.Random(5)
     pairs = [(x, x + dice.gauss(0, 1)) for x in (dice.random() for _ in range(40))]
-    found = Correlation.of(pairs)
+    correlation = Correlation.of(pairs)
     # Fisher's interval: atanh(value) ± 1.96/sqrt(37).
-    assert (found.low, found.value, found.high) == pytest.approx(
+    assert (correlation.low, correlation.value, correlation.high) == pytest.approx(
         (-0.1099, 0.2087, 0.4885), abs=1e-4
     )
     assert Correlation.of(pairs[:9]) is None
@@ -420,9 +426,9 @@ def late(tmp_path):
         ("ann", "2026-10-07T12:00:00", False), ("bob", "2026-10-05T12:00:00", False),
         ("carl", "", False)
     ):  # fmt: skip
-        found = record(6, when=when, late=marked)
+        graded = record(6, when=when, late=marked)
         mark = Mark("correct", points=6, worth=6, version="v", title="the sum")
-        give(store, replace(found, student=student, marks={"turns/sum": mark}))
+        give(store, replace(graded, student=student, marks={"turns/sum": mark}))
     (store.folder / "term.toml").write_text(RULES + "[extensions.bob]\nturns = 'excused'\n")
     (tmp_path / "book.csv").write_text(BOOK)
     return store
@@ -475,7 +481,7 @@ def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, capsys):
 
 def test_marks_are_handed_on_as_of_a_date(late):
     path = late.folder / "journal.jsonl"
-    (ann,) = [one for one in Journal(late.folder).events if one.student == "ann"]
+    (ann,) = [event for event in Journal(late.folder).events if event.student == "ann"]
     path.unlink()
     days = (("2026-10-01", 6), ("2026-10-20", 3), ("2026-12-20", 5))
     Journal(late.folder).append(

@@ -166,8 +166,14 @@ def test_the_server_listens_on_this_machine_alone(out):
     with Served(out) as served:
         import psutil
 
-        mine = [one for one in psutil.Process().net_connections("inet") if one.status == "LISTEN"]
-        assert {one.laddr.ip for one in mine if one.laddr.port == served.port} == {"127.0.0.1"}
+        mine = [
+            connection
+            for connection in psutil.Process().net_connections("inet")
+            if connection.status == "LISTEN"
+        ]
+        assert {
+            connection.laddr.ip for connection in mine if connection.laddr.port == served.port
+        } == {"127.0.0.1"}
 
 
 def test_what_a_student_wrote_is_shown_and_never_obeyed(out):
@@ -195,9 +201,9 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
     with Served(out, grader="Ann") as served:
         served_class = Class(out)
         (cluster,) = [
-            one
-            for one in served_class.clusters.values()
-            if len(one.members) == 2 and one.mark.outcome == "wrong"
+            candidate
+            for candidate in served_class.clusters.values()
+            if len(candidate.members) == 2 and candidate.mark.outcome == "wrong"
         ]
         assert (
             served.decide(
@@ -205,7 +211,7 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
             ).status
             == 303
         )
-        place = [one.student for one in cluster.members].index("copies")
+        place = [record.student for record in cluster.members].index("copies")
         assert served.decide(cluster.id, f"credit=1&only={place}").status == 303
         for body, status in (
             ("credit=9", 409),
@@ -225,7 +231,9 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
             and "Copied?" in page
             and "appeal" in page
         )
-    moved = {one.student: one.after for one in regrade(out, solutions=graded / "solutions").moves}
+    moved = {
+        move.student: move.after for move in regrade(out, solutions=graded / "solutions").moves
+    }
     assert moved == {"copies": 6, "was-copied": 5.5}
     mark = Store(out).read("was-copied", "turns").marks["turns/sum"]
     assert mark.messages == ("Copied?", "Half of it.") and mark.before.outcome == "wrong"
@@ -242,7 +250,7 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
         served.decide(cluster.id, "credit=back")
         served.decide(cluster.id, "credit=back")
         assert served.decide(cluster.id, "credit=back").status == 409
-    assert {one.after for one in regrade(out, solutions=graded / "solutions").moves} == {5}
+    assert {move.after for move in regrade(out, solutions=graded / "solutions").moves} == {5}
 
 
 def test_two_who_judge_at_once_are_told_and_lose_nothing(out):
@@ -257,12 +265,12 @@ def test_two_who_judge_at_once_are_told_and_lose_nothing(out):
         body = f"credit=1&comment=All+of+it&seen={quote(seen)}"
         response, page = first.ask(f"/{first.secret}/answer/{name}", "POST", body, **headers)
         assert response.status == 409 and "Ben gave 0.5" in page and "All of it" in page
-        assert {one.who for one in Journal(out).by_people} == {"Ben"}
+        assert {decision.who for decision in Journal(out).by_people} == {"Ben"}
         # Ann cannot take back Ben's decision, but she can decide after it.
         assert first.decide(name, "credit=back").status == 409
         assert first.decide(name, "credit=1").status == 303
         assert second.decide(name, "credit=back").status == 303
-        assert {one.who for one in Journal(out).standing().decisions.values()} == {"Ann"}
+        assert {decision.who for decision in Journal(out).standing().decisions.values()} == {"Ann"}
 
 
 def test_names_are_hidden_on_request(out):
@@ -357,7 +365,9 @@ def test_plots_are_seen_beside_the_text_and_only_pictures_are_shown(plotted):
         assert "img-src data:;" in POLICY
         _, text = served.ask(f"/{served.secret}/")
         answers = re.findall(r"answer/([0-9a-f]{16})", text)
-        pages = [served.ask(f"/{served.secret}/answer/{one}")[1] for one in dict.fromkeys(answers)]
+        pages = [
+            served.ask(f"/{served.secret}/answer/{answer}")[1] for answer in dict.fromkeys(answers)
+        ]
     assert len(pages) == 3
     for page in pages:
         (student,) = re.findall(r"bends upwards, says (\w+)", page.partition("The cells of")[0])
@@ -414,10 +424,10 @@ def test_pages_are_accessible(out, plotted, browser, scheme):
         )
     for page in on_a_telephone(out, plotted, browser, scheme):
         page.evaluate(axe.read_text("utf8"))
-        found = page.evaluate(
+        violations = page.evaluate(
             "async () => (await axe.run()).violations.map(v => v.id + ': ' + v.nodes[0].html)"
         )
-        assert found == []
+        assert violations == []
 
 
 MANY = 12
@@ -430,15 +440,15 @@ def test_many_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
     """
     out = shutil.copytree(graded / "out", tmp_path / "out")
     store = Store(out)
-    found = store.read("rounded-0", "turns")
+    rounded = store.read("rounded-0", "turns")
     for record in store.all():
         store.place(record.student, record.assignment).unlink()
     for number in range(MANY):
-        one = found.as_json()
-        one["student"] = f"student-{number:03}"
-        one["marks"]["turns/sum"]["group"] = f"{number:016x}"
-        one["answers"]["turns/sum"]["plain"]["nodes"][0][-1] = f"1.000{number:03}"
-        give(store, Record.from_json(one, "one"))
+        content = rounded.as_json()
+        content["student"] = f"student-{number:03}"
+        content["marks"]["turns/sum"]["group"] = f"{number:016x}"
+        content["answers"]["turns/sum"]["plain"]["nodes"][0][-1] = f"1.000{number:03}"
+        give(store, Record.from_json(content, "one"))
     with Served(out) as served:
         # The page's own policy forbids a test's scripts, too; its content is tested above.
         page = browser.new_context(bypass_csp=True).new_page()
@@ -468,8 +478,12 @@ def test_many_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
         page.context.close()
     assert all(url.startswith("http://127.0.0.1:") for url in requests)
     decided = Journal(out).standing().decisions
-    assert sorted(one.credit for one in decided.values()) == [0.5] * (MANY // 2) + [1] * (MANY // 2)
-    assert [one.comment for one in decided.values() if one.comment] == ["Rounded: 4 digits"]
+    assert sorted(decision.credit for decision in decided.values()) == [0.5] * (MANY // 2) + [1] * (
+        MANY // 2
+    )
+    assert [decision.comment for decision in decided.values() if decision.comment] == [
+        "Rounded: 4 digits"
+    ]
 
 
 #: Code that runs before the command and imitates Windows: what it lacks, and how it locks a file.

@@ -531,13 +531,13 @@ def test_addresses_are_the_same_each_time():
 
 def warm_parents():
     """Return the processes of the workers, oldest first."""
-    found = []
+    processes = []
     for process in psutil.Process().children(recursive=True):
         with contextlib.suppress(psutil.Error):  # It may end in the meantime.
             if "coursework.grading.execution.warm_parent" in " ".join(process.cmdline()):
-                found.append(process)
-    assert found
-    return sorted(found, key=lambda process: process.pid)
+                processes.append(process)
+    assert processes
+    return sorted(processes, key=lambda process: process.pid)
 
 
 def test_a_worker_that_always_dies_is_named(sandbox, monkeypatch):
@@ -660,12 +660,12 @@ def test_records_may_come_in_any_pieces():
     data = (json.dumps(RECORD) + "\n\n" + json.dumps({"done": True}) + "\n").encode()
     for size in (1, 2, 7, 1000):
         reader = records.Records(1)
-        found = [
+        received = [
             record
             for start in range(0, len(data), size)
             for record in reader.feed(data[start : start + size])
         ]
-        assert found == [RECORD, {"done": True}] and reader.damaged == 0
+        assert received == [RECORD, {"done": True}] and reader.damaged == 0
 
 
 @pytest.mark.parametrize(
@@ -687,8 +687,8 @@ def test_records_may_come_in_any_pieces():
     ],
 )
 def test_a_record_of_another_form_is_dropped_and_counted(changed):
-    found, reader = read(json.dumps(RECORD | changed).encode(), json.dumps(RECORD).encode())
-    assert found == [RECORD] and reader.damaged == 1
+    received, reader = read(json.dumps(RECORD | changed).encode(), json.dumps(RECORD).encode())
+    assert received == [RECORD] and reader.damaged == 1
 
 
 @pytest.mark.parametrize(
@@ -710,8 +710,8 @@ def test_a_record_of_another_form_is_dropped_and_counted(changed):
     ],
 )
 def test_what_is_no_record_is_dropped_and_counted(line):
-    found, reader = read(line)
-    assert found == [] and reader.damaged == 1
+    received, reader = read(line)
+    assert received == [] and reader.damaged == 1
 
 
 def test_floods_are_noticed():

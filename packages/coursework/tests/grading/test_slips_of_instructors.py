@@ -56,9 +56,9 @@ def test_a_full_disk_is_said_in_a_sentence_and_the_next_run_goes_on(course, monk
                str(course / "course" / "solutions")]  # fmt: skip
     with monkeypatch.context() as patched:
         patched.setattr(Store, "stage", full)
-        with pytest.raises(SystemExit, match="coursework grade: No space left on device") as found:
+        with pytest.raises(SystemExit, match="coursework grade: No space left on device") as caught:
             main(command)
-    assert "Traceback" not in str(found.value) + capsys.readouterr().err
+    assert "Traceback" not in str(caught.value) + capsys.readouterr().err
     with Store(course / "out").locked(), pytest.raises(SystemExit, match="Wait until it has fin"):
         main(command)
     main(command)

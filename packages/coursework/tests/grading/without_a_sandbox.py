@@ -10,19 +10,19 @@ def run_without_a_sandbox(jobs, finish, *others):
     """Return the sandbox's results for notebooks whose answers are numbers or function names."""
 
     def answer(job, name, about):
-        found = re.search(
+        call = re.search(
             rf"check\('{name}', (.*)\)", "\n".join(cell["source"] for cell in job["cells"])
         )
-        if found is None or found[1] in ("...", "load", "why"):
+        if call is None or call[1] in ("...", "load", "why"):
             return {"outcome": "missing"}
         if not about["calls"]:
             return {
                 "outcome": "recorded",
-                "plain": to_plain(ast.literal_eval(found[1])),
+                "plain": to_plain(ast.literal_eval(call[1])),
                 "from": "check",
                 "cell": 0,
             }
-        factor = {"twice": 2, "thrice": 3}[found[1]]
+        factor = {"twice": 2, "thrice": 3}[call[1]]
         said = {"outcome": "recorded", "from": "check", "cell": 0}
         for key, calls in (("plain", about["calls"]), ("secret", about["secret calls"])):
             plain = to_plain(lambda x: factor * x, calls["arguments"])

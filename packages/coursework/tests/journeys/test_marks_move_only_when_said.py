@@ -101,7 +101,7 @@ def test_a_table_of_decisions_decides_only_what_it_was_written_for(course):
     course.hands_in("ada", "hw2", why=TOO_SHORT)
     course.grade("--yes")
     assert course.points()["ada"] == 8 and [
-        one["student"] for one in course.table("undecided.csv")
+        row["student"] for row in course.table("undecided.csv")
     ] == ["ada"]
     said = course.run("merge", "marks", path, "--grader", "Ann")
     assert (

@@ -148,7 +148,9 @@ class Story:
         attempt.path.parent.mkdir(exist_ok=True)
         self.write_notebook(worker, name, attempt)
         if attempt.has_copy:
-            copy = notebook(f"check('{name}/{one}', {one})" for one in ("load", "why"))
+            copy = notebook(
+                f"check('{name}/{variable}', {variable})" for variable in ("load", "why")
+            )
             nbformat.write(copy, attempt.path.with_name(f"{name}-Copy1.ipynb"))
 
     @staticmethod
@@ -160,7 +162,9 @@ class Story:
             cells.append(f"check('{name}/{question}', {shown})")
         made = notebook([*attempt.comments, *cells])
         if attempt.is_blank:
-            made = notebook(f"check('{name}/{one}', {one})" for one in ("load", "why"))
+            made = notebook(
+                f"check('{name}/{variable}', {variable})" for variable in ("load", "why")
+            )
         # Show the text of the archive that the student has.
         text = f"A beam carries {own_weight(worker, name)} N twice. Give the whole load."
         made.cells[-1].outputs = [nbformat.v4.new_output("display_data", {"text/markdown": text})]
@@ -201,17 +205,17 @@ class Story:
         """Return all marks as they were given, by question."""
         if not (self.place / "marks" / FILE).exists():
             return {}
-        found = {}
+        marks = {}
         for event in Journal(self.place / "marks").events:
             if isinstance(event, Given):
                 for question, part in event.marks.items():
                     own = question.partition("/")[2]
-                    found[event.student, event.assignment, own] = (
+                    marks[event.student, event.assignment, own] = (
                         part.points,
                         part.worth,
                         part.outcome,
                     )
-        return found
+        return marks
 
     # -- the expected result
 
@@ -258,13 +262,13 @@ class Story:
         }
 
     def with_decisions(self, worker, name, answers, machine):
-        found = {}
+        marks = {}
         for question, (points, worth, waits) in machine.items():
             by_hand = self.decided.get((worker, name, question))
             if by_hand and by_hand.answer == answers[question]:
                 points, waits = by_hand.credit * worth, False
-            found[question] = (points, worth, waits)
-        return found
+            marks[question] = (points, worth, waits)
+        return marks
 
     def settle(self, key, attempt, yes):
         """Give marks; earlier ones change only with a yes."""
@@ -313,9 +317,9 @@ class Story:
         self.run("regrade", *words, crash=crash)
         for name in {name for _, name in self.graded}:
             self.saw(name)
-        for key, one in list(self.graded.items()):
-            machine = self.machine(*key, one.answers)
-            self.settle(key, SimpleNamespace(**vars(one) | {"machine": machine}), yes)
+        for key, attempt in list(self.graded.items()):
+            machine = self.machine(*key, attempt.answers)
+            self.settle(key, SimpleNamespace(**vars(attempt) | {"machine": machine}), yes)
 
     def merge(self, file, who, yes, crash=None):
         words = ["merge", self.place / "marks", file, "--grader", who, *yes]
@@ -344,9 +348,9 @@ class Story:
             if marks[question][2]
         }
         records = {
-            (one.student, one.assignment, name.partition("/")[2]): (mark.points, mark.worth)
-            for one in Store(self.place / "marks").all()
-            for name, mark in one.marks.items()
+            (record.student, record.assignment, name.partition("/")[2]): (mark.points, mark.worth)
+            for record in Store(self.place / "marks").all()
+            for name, mark in record.marks.items()
         }
         assert records == expected
 

@@ -29,7 +29,9 @@ def course(tmp_path):
     course = Course(tmp_path, hw1={"sum": (5, 4), "arm": (2, 4)}, hw2={"load": (7, 8)})
     (tmp_path / "roster.csv").write_text(
         "student,name,email\n"
-        + "".join(f"{one},{one.capitalize()} Lee,{one}@uni.example\n" for one in STUDENTS)
+        + "".join(
+            f"{student},{student.capitalize()} Lee,{student}@uni.example\n" for student in STUDENTS
+        )
     )
     course.marks.mkdir()
     write_term(course)
@@ -54,9 +56,9 @@ def collected(course, student, name, when="2025-10-01 12:00:00", file=None, **an
 
 def book_of(course, *students):
     rows = [
-        {"Student": "", "ID": number, "SIS User ID": "", "SIS Login ID": one, "Section": "x",
+        {"Student": "", "ID": number, "SIS User ID": "", "SIS Login ID": student, "Section": "x",
          "HW 1 (11)": "", "HW 2 (12)": ""}
-        for number, one in enumerate(students or STUDENTS, 1)
+        for number, student in enumerate(students or STUDENTS, 1)
     ]  # fmt: skip
     return course.write_table("book.csv", rows)
 
@@ -169,8 +171,8 @@ def test_a_group_hands_in_once(course):
     collected(course, "aa", "hw2", load=6)
     collected(course, "cem", "hw1")
     said = course.grade()
-    for one, name in (("ada", "hw1"), ("ben", "hw2")):
-        assert f"In {name}, members of the group 'aa' keep marks of their own: {one}." in said
+    for student, name in (("ada", "hw1"), ("ben", "hw2")):
+        assert f"In {name}, members of the group 'aa' keep marks of their own: {student}." in said
     # It was the group's work, and there was no line about the group yet.
     alone = "grade handed-in/submitted/ada/hw1 --out marks --solutions solutions --student aa"
     assert "is now" not in course.run(*alone.split()) + course.grade()
