@@ -293,8 +293,8 @@ def names_of(program):
     """Return the names that a program's lines on the card need in Python."""
     names = {"np": np}
     for name, place in NAMES.get(program, ()):
-        found = resolve_name(place)
-        names |= {name: found} if name else vars(found)
+        imported = resolve_name(place)
+        names |= {name: imported} if name else vars(imported)
     if program == "Isaac Lab 2":
         names |= vars(isaac_mathematics())
     if program == "Eigen (C++)":

@@ -116,7 +116,7 @@ def _dcm_fault(question: Question, numbers: Sequence[Number]) -> Fault | None:
     rows = [numbers[0:3], numbers[3:6], numbers[6:9]]
     worst = max(
         ((abs(MP.fdot(rows[i], rows[j]) - (i == j)), i, j) for i in range(3) for j in range(i, 3)),
-        key=lambda found: found[0],
+        key=lambda deviation: deviation[0],
     )
     size, i, j = worst
     where = " at the values tried" if question.symbols else ""

@@ -456,15 +456,15 @@ def program_named(words):
     """
     given = words.casefold()
     exact = [program for program in PROGRAMS if program.casefold() == given]
-    found = exact or [program for program in PROGRAMS if f" {given}" in f" {program.casefold()}"]
-    if len(found) != 1:
-        which = ", ".join(found or PROGRAMS)
+    matches = exact or [program for program in PROGRAMS if f" {given}" in f" {program.casefold()}"]
+    if len(matches) != 1:
+        which = ", ".join(matches or PROGRAMS)
         raise ValueError(
             f"{words!r} matches several programs: {which}"
-            if found
+            if matches
             else f"unknown program {words!r}: {which}"
         )
-    return found[0]
+    return matches[0]
 
 
 def expected_of(program):

@@ -24,7 +24,7 @@ def mountings(first, second, noise):
     """
     if first.dcms.shape[1] < ON_ONE_SIDE:
         return []
-    found = []
+    chains = []
     for (i, reading), (j, other), inverse in itertools.product(
         enumerate(first.readings), enumerate(second.readings), (False, True)
     ):
@@ -47,9 +47,9 @@ def mountings(first, second, noise):
                     "body turn": body,
                     "world turn": world,
                 }
-                found.append(Chain(reading, other, relation, both, rarity, float(gap)))
+                chains.append(Chain(reading, other, relation, both, rarity, float(gap)))
                 break
-    return sorted(found, key=lambda chain: chain.cost)
+    return sorted(chains, key=lambda chain: chain.cost)
 
 
 def _constant_turns(start, end):

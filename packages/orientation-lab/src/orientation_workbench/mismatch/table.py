@@ -468,7 +468,7 @@ def readings(kind, declared, degrees_likely=False):
     """
     base = BOOK | ({"unit": "degrees"} if degrees_likely else {}) | declared
     names = [group["group"] for group in KINDS[kind]]
-    found = []
+    plausible = []
     for options in itertools.product(*(group["choices"] for group in KINDS[kind])):
         chosen = dict(zip(names, options))
         choices = {name: option["value"] for name, option in chosen.items()}
@@ -478,7 +478,7 @@ def readings(kind, declared, degrees_likely=False):
         wrong = [name for name in other if name in base]
         faults = sum(other[name]["faults"] or 1 for name in wrong)
         if faults <= MOST_FAULTS:
-            found.append({
+            plausible.append({
                 "kind": kind, "choices": choices, "faults": faults,
                 "rarity": sum((option["rarity"] for option in other.values()), 0.0),
                 "words": [option["words"] for option in other.values()],
@@ -486,7 +486,7 @@ def readings(kind, declared, degrees_likely=False):
                               if (name, choices[name]) in SHARED),
                 "codes": _codes(choices, base, declared),
             })  # fmt: skip
-    return found
+    return plausible
 
 
 def _codes(choices, base, declared):

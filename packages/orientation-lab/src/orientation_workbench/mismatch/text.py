@@ -123,13 +123,13 @@ def _rows_of_text(text, name):
     if NUMBER.search(bare):
         text = bare
     text = _without_places(_decimal_points(text))
-    if found := _PATTERNS["not a number"].search(text):
+    if match := _PATTERNS["not a number"].search(text):
         raise ValueError(
-            f"the {name} side contains '{found.group().strip()}', which is not a number"
+            f"the {name} side contains '{match.group().strip()}', which is not a number"
         )
-    if found := _PATTERNS["arithmetic"].search(text):
+    if match := _PATTERNS["arithmetic"].search(text):
         raise ValueError(
-            f"the {name} side contains '{found.group().strip()}': work it out and paste the result"
+            f"the {name} side contains '{match.group().strip()}': work it out and paste the result"
         )
     text = _sums(text)
     if not NUMBER.search(text):
@@ -198,10 +198,10 @@ def _columns(text):
         if (
             not table
             or any(len(row) != len(names) for row in table)
-            or not (found := _named_columns(names))
+            or not (columns := _named_columns(names))
         ):
             continue
-        which, more = found
+        which, more = columns
         kept = [[row[column] for column in which] for row in table]
         if all(_PATTERNS["whole number"].search(field) for row in kept for field in row):
             half = _half([field for row in kept for field in row])
@@ -217,9 +217,9 @@ def _named_columns(names):
     """Return the columns that hold an orientation, in order, and what their names declare."""
     bare = [_PATTERNS["unit of a column"].sub("", name) for name in names]
     entries = [
-        (found[1], found[2], column)
+        (match[1], match[2], column)
         for column, name in enumerate(bare)
-        if (found := _PATTERNS["entry of a matrix"].search(name))
+        if (match := _PATTERNS["entry of a matrix"].search(name))
     ]
     if len(entries) == 9:
         return [column for *_, column in sorted(entries)], {}
@@ -289,7 +289,7 @@ def _without_places(text):
             continue
         below = (
             inset
-            if (found := _PATTERNS["not turns"].search(line)) and not line[found.end() :].strip()
+            if (match := _PATTERNS["not turns"].search(line)) and not line[match.end() :].strip()
             else None
         )
         kept.append(_PATTERNS["not turns"].sub(" ", line))
@@ -303,12 +303,12 @@ def _labelled(text):
         for match in _PATTERNS["named"].finditer(text)
     ]
     parts = [
-        (key, found)
-        for key, found in pairs
-        if found and _PATTERNS["part of a quaternion"].search(key)
+        (key, number)
+        for key, number in pairs
+        if number and _PATTERNS["part of a quaternion"].search(key)
     ]
     pairs = [
-        (re.sub(r"^(.*[_.])?q?_*", "", key), found[0]) for key, found in parts or pairs if found
+        (re.sub(r"^(.*[_.])?q?_*", "", key), number[0]) for key, number in parts or pairs if number
     ]
     for place, more in _NAMES:
         size = max(place.values()) + 1
@@ -327,10 +327,10 @@ def _labelled(text):
     return None
 
 
-def _half(found):
+def _half(numbers):
     """Return half a unit of the last digit of the most precise number that is not small."""
-    largest = max(abs(float(number)) for number in found)
-    large = [number.lower() for number in found if abs(float(number)) >= 0.1 * largest]
+    largest = max(abs(float(number)) for number in numbers)
+    large = [number.lower() for number in numbers if abs(float(number)) >= 0.1 * largest]
     decimals = max(
         len(mantissa.partition(".")[2]) - int(power or 0)
         for mantissa, _, power in (number.partition("e") for number in large)

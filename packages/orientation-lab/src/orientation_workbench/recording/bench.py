@@ -1106,7 +1106,10 @@ class _Bench:
         }
         # The errors of tilt and heading between the runs, and those of each sensor.
         pairs = ((claimed, differ), *(() if heading is None else (heading,)))
-        times = [*(found / max(own, 1e-6) for own, found in pairs), *np.sqrt([*squares.values()])]
+        times = [
+            *(difference / max(own, 1e-6) for own, difference in pairs),
+            *np.sqrt([*squares.values()]),
+        ]
         light, advice = _light(max(times), 3, 5), ""
         if light == RED:
             advice = f"Its errors are {max(times):.0f} times what it claims. " + (

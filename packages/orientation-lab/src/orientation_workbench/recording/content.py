@@ -181,8 +181,8 @@ def read_content(
     for table in tables:
         of_table = f" of {table.name}" * (len(tables) > 1)
         remarks += [remark + of_table for remark in table.remarks]
-        found, left = _groups(table, of_table)
-        groups += found
+        of_this_table, left = _groups(table, of_table)
+        groups += of_this_table
         unused += left
     chosen, more = _chosen(groups)
     remarks += more

@@ -219,14 +219,14 @@ def filter_inputs(
         noise = noise._replace(
             field=max(noise.field, float(np.sqrt(np.mean(uneven**2))) * lasting(uneven))
         )
-    found = []
+    inputs = []
     for first, last in parts or [(0, len(time))]:
         part = slice(first, last)
         means = (rates[part] + np.concatenate([rates[first : first + 1], rates[part][:-1]])) / 2
         vectors = [values[part] for values in (forces, field) if values is not None]
         at, turning, seen = in_blocks(time[part], rates[part], vectors)
         fewer = np.sqrt(max(1, round((last - first) / len(at))))
-        found.append(
+        inputs.append(
             FilterInput(
                 at,
                 means if len(at) == len(means) else turning,
@@ -236,7 +236,7 @@ def filter_inputs(
                 np.interp(at, time[part], doubt[part]) / fewer,
             )
         )
-    return found
+    return inputs
 
 
 def judge(given: FilterInput, progress: Callable[[float], None] | None = None) -> Judgement:

@@ -168,16 +168,16 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
         if not runs or k > runs[-1][-1] + 1 or spread[k] > 1.8 * spread[runs[-1]].min():
             runs.append([])
         runs[-1].append(int(k))
-    found = []
+    calm_stretches = []
     for run in runs:
         first, last = run[0] * size, (run[-1] + 1) * size
         deviation = float(np.sqrt(rates[first:last].var(axis=0, ddof=1).mean()))
         lies = bool(autocorrelation(rates[first:last]) < 0.2 or deviation < TREMBLE)
-        found.append(Stretch(first, last, lies, deviation))
+        calm_stretches.append(Stretch(first, last, lies, deviation))
     # The noise at rest is the same everywhere, but a jolt in the middle of it may also look white.
-    calmest = min((stretch.deviation for stretch in found if stretch.still), default=0.0)
+    calmest = min((stretch.deviation for stretch in calm_stretches if stretch.still), default=0.0)
     usual = max(3 * calmest, TREMBLE)
-    return [each._replace(still=each.still and each.deviation < usual) for each in found]
+    return [each._replace(still=each.still and each.deviation < usual) for each in calm_stretches]
 
 
 # --- axes, signs, unit and scale of a gyroscope ---------------------------------------------------
@@ -474,7 +474,7 @@ def readings(
     if len(places) < 10 or np.sqrt((measured[use] ** 2).sum()) < 0.05:
         return []
     whole = (measured[use] ** 2).sum()
-    found = []
+    fits = []
     for name, dcms in candidates.items():
         dcms = dcms[places]
         for conjugate in (False, True):
@@ -484,7 +484,7 @@ def readings(
             turn = rotation_vector_from_dcm(turn)[use]
             products = turn.T @ measured[use]
             squares = (turn**2).sum() + whole - 2 * np.einsum("kij,ij->k", ASSIGNMENTS, products)
-            found += [
+            fits += [
                 Reading(float(np.sqrt(max(0.0, square) / whole)), name, conjugate, mounting)
                 for square, mounting in zip(squares, ASSIGNMENTS, strict=True)
             ]
@@ -496,4 +496,4 @@ def readings(
             np.abs(reading.mounting - np.eye(3)).sum(),
         )
 
-    return sorted(found, key=plain)
+    return sorted(fits, key=plain)

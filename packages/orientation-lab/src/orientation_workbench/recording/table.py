@@ -308,30 +308,30 @@ def _labels(lines: list[str], text: str) -> tuple[tuple[str, ...], list[list[str
 
     There are no names if more lines differ than a table may lose.
     """
-    found = [
+    labelled = [
         _labelled(line) if ":" in line or "=" in line else ((), [line.strip()]) for line in lines
     ]
-    there = [own for own, row in found if any(row)]
+    there = [own for own, row in labelled if any(row)]
     names, count = Counter(there or [()]).most_common(1)[0]
     # With a space before each number, further lines may be another table of a log.
     some = 0 if re.search(r"[:=][ \t]+[-+.\d]", text) else MOST_BROKEN * len(there)
     return (
         names if len(there) - count <= max(2, some) else (),
-        [row if own == names else [line.strip()] for (own, row), line in zip(found, lines)],
+        [row if own == names else [line.strip()] for (own, row), line in zip(labelled, lines)],
     )
 
 
 def _labelled(line: str) -> tuple[tuple[str, ...], list[str]]:
     """Return the labels and numbers of a line, if there is nothing else but a time before them."""
-    before, *found = LABELLED.split(line)
+    before, *parts = LABELLED.split(line)
     time = before.rstrip(" \t,;|").removesuffix("->").strip()
-    names = ("column 1" if "time" in found[::3] else "time",) * bool(time) + (*found[::3],)
-    fields = [time] * bool(time) + found[1::3]
+    names = ("column 1" if "time" in parts[::3] else "time",) * bool(time) + (*parts[::3],)
+    fields = [time] * bool(time) + parts[1::3]
     return (
         (names, fields)
-        if len(found) > 8
+        if len(parts) > 8
         and len({*names}) == len(names)
-        and not "".join(found[2::3]).strip(" \t,;|")
+        and not "".join(parts[2::3]).strip(" \t,;|")
         and all(_number(field) is not None for field in fields)
         else ((), [line.strip()])
     )
