@@ -343,7 +343,7 @@ def test_offer_is_written_and_withdrawn():
     assert '<a href="x.pdf">' in offered and offered.endswith("<p>Text</p>")
     assert whole_book.with_offer(offered, ["other"]).count("<p class") == 1
     # A book that offers nothing needs no place for it.
-    assert [whole_book.with_offer(one, []) for one in (offered, "<h1>")] == [front, "<h1>"]
+    assert [whole_book.with_offer(page, []) for page in (offered, "<h1>")] == [front, "<h1>"]
     with pytest.raises(RuntimeError, match="one place"):
         whole_book.with_offer("<h1>Book</h1>", ["PDF"])
 

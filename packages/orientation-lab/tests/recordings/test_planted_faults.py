@@ -72,7 +72,10 @@ def judged(kind, seed, with_filter=False):
         # Beside a fault, what counts is what is advised.
         if not kind or (verdict.advice and not true(verdict, planted))
     ]
-    return named, [f"{one.light}: {one.about}: {one.words} -> {one.advice}" for one in others]
+    return named, [
+        f"{verdict.light}: {verdict.about}: {verdict.words} -> {verdict.advice}"
+        for verdict in others
+    ]
 
 
 def true(verdict, planted):

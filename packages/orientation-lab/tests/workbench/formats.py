@@ -43,14 +43,15 @@ def _table(names, columns, separator=",", number="{:.7g}", head=(), end="", comm
 
 
 def _parts():
-    found = recording()
-    return found, *(
-        found[kind] for kind in ("time", "gyroscope", "accelerometer", "magnetometer", "quaternion")
+    recorded = recording()
+    return recorded, *(
+        recorded[kind]
+        for kind in ("time", "gyroscope", "accelerometer", "magnetometer", "quaternion")
     )
 
 
-def _gravity(found):
-    return found["truth"].inv().apply([0, 0, GRAVITY])
+def _gravity(recorded):
+    return recorded["truth"].inv().apply([0, 0, GRAVITY])
 
 
 def _zipped(files):
@@ -65,16 +66,16 @@ def phyphox_zip():
     """phyphox, CSV: a zip of a table for each sensor, in quotes, and two about the telephone."""
     _, time, gyr, acc, mag, _ = _parts()
 
-    def one(stem, unit, values):
+    def table(stem, unit, values):
         names = ['"Time (s)"', *(f'"{stem}{axis} ({unit})"' for axis in "xyz")]
         return _table(names, (time, values), number="{:.9E}")
 
     return Form(
         _zipped(
             {
-                "Gyroscope.csv": one("Gyroscope ", "rad/s", gyr),
-                "Accelerometer.csv": one("Acceleration ", "m/s^2", acc),
-                "Magnetometer.csv": one("Magnetic field ", "µT", mag),
+                "Gyroscope.csv": table("Gyroscope ", "rad/s", gyr),
+                "Accelerometer.csv": table("Acceleration ", "m/s^2", acc),
+                "Magnetometer.csv": table("Magnetic field ", "µT", mag),
                 "meta/device.csv": '"property","value"\n"version","1.1.11"\n"build","1011104"\n',
                 "meta/time.csv": '"event","experiment time","system time","system time text"\n'
                 '"START",0.000000000E0,1.642499117E9,"2022-01-18 10:45:17.461 UTC+01:00"\n'
@@ -91,7 +92,7 @@ def phyphox_table():
     units = {"Gyroscope": "rad/s", "Acceleration": "m/s^2", "Magnetic field": "µT"}
     names = [
         "Time (s)",
-        *(f"{one} {axis} ({unit})" for one, unit in units.items() for axis in "xyz"),
+        *(f"{sensor} {axis} ({unit})" for sensor, unit in units.items() for axis in "xyz"),
     ]
     return Form(
         _table(names, (time, gyr, acc, mag), ";", comma=True),
@@ -103,27 +104,27 @@ def sensor_logger():
     """A zip of one table for each sensor, z before y before x; the accelerometer
     without gravity; beside settings.
     """
-    found, time, gyr, acc, mag, quaternion = _parts()
+    recorded, time, gyr, acc, mag, quaternion = _parts()
     clock = (1.7e18 + 1e9 * time, time)
-    gravity = _gravity(found)
+    gravity = _gravity(recorded)
 
-    def one(values, names="zyx"):
+    def table(values, names="zyx"):
         rows = (
             ",".join([f"{k:.0f}", f"{t:.9f}", *(f"{value:.8f}" for value in row)])
             for k, t, row in zip(*clock, values, strict=True)
         )
         return "\n".join([",".join(["time", "seconds_elapsed", *names]), *rows])
 
-    angles = found["truth"].as_euler("ZXY")[:, [2, 1, 0]]
+    angles = recorded["truth"].as_euler("ZXY")[:, [2, 1, 0]]
     return Form(
         _zipped(
             {
-                "Gyroscope.csv": one(gyr[:, ::-1]),
-                "Accelerometer.csv": one((acc - gravity)[:, ::-1]),
-                "Gravity.csv": one(gravity[:, ::-1]),
-                "TotalAcceleration.csv": one(acc[:, ::-1]),
-                "Magnetometer.csv": one(mag[:, ::-1]),
-                "Orientation.csv": one(
+                "Gyroscope.csv": table(gyr[:, ::-1]),
+                "Accelerometer.csv": table((acc - gravity)[:, ::-1]),
+                "Gravity.csv": table(gravity[:, ::-1]),
+                "TotalAcceleration.csv": table(acc[:, ::-1]),
+                "Magnetometer.csv": table(mag[:, ::-1]),
+                "Orientation.csv": table(
                     np.column_stack([quaternion[:, ::-1], angles]),
                     ["qz", "qy", "qx", "qw", "roll", "pitch", "yaw"],
                 ),
@@ -136,10 +137,10 @@ def sensor_logger():
 
 
 def sensor_logger_json():
-    found, entries = recording(), []
-    for k, time in enumerate(found["time"]):
+    recorded, entries = recording(), []
+    for k, time in enumerate(recorded["time"]):
         for sensor in ("gyroscope", "accelerometer", "magnetometer"):
-            x, y, z = found[sensor][k].round(6)
+            x, y, z = recorded[sensor][k].round(6)
             entries.append({"sensor": sensor, "seconds_elapsed": time, "x": x, "y": y, "z": z})
     return Form(
         json.dumps(entries).encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1}
@@ -150,13 +151,15 @@ def motion_sense():
     """Core Motion in a data set: a column without a name that counts,
     angles, gravity, turning, acceleration.
     """
-    found, time, gyr, acc, _, _ = _parts()
-    gravity = _gravity(found) / GRAVITY
-    names = [""] + [f"attitude.{one}" for one in ("roll", "pitch", "yaw")]
+    recorded, time, gyr, acc, _, _ = _parts()
+    gravity = _gravity(recorded) / GRAVITY
+    names = [""] + [f"attitude.{angle}" for angle in ("roll", "pitch", "yaw")]
     names += [
-        f"{one}.{axis}" for one in ("gravity", "rotationRate", "userAcceleration") for axis in "xyz"
+        f"{quantity}.{axis}"
+        for quantity in ("gravity", "rotationRate", "userAcceleration")
+        for axis in "xyz"
     ]
-    angles = found["truth"].as_euler("ZXY")[:, [2, 1, 0]]
+    angles = recorded["truth"].as_euler("ZXY")[:, [2, 1, 0]]
     columns = [np.arange(len(time)), angles, gravity, gyr, acc / GRAVITY - gravity]
     return Form(
         _table(names, columns),
@@ -295,20 +298,22 @@ def ardupilot():
     """Lines of several kinds, each beginning with its name; two instruments take
     turns, and angles that were wanted.
     """
-    found, time, gyr, acc, mag, _ = _parts()
+    recorded, time, gyr, acc, mag, _ = _parts()
     lines = ["FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns",
              "FMT, 1, 2, IMU, QBffffffIIf, TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,EA,T",
              "FMT, 1, 2, MAG, QBhhh, TimeUS,I,MagX,MagY,MagZ",
              "FMT, 1, 2, ATT, Qffff, TimeUS,DesRoll,Roll,DesPitch,Pitch,DesYaw,Yaw",
              "PARM, 1, ACRO_BAL_PITCH, 1"]  # fmt: skip
     random = np.random.default_rng(2)
-    yaw, pitch, roll = found["truth"].as_euler("ZYX", degrees=True).T
+    yaw, pitch, roll = recorded["truth"].as_euler("ZYX", degrees=True).T
     for k, t in enumerate(time):
         for number in (0, 1):
             other = 0.01 * random.normal(size=6) * number
-            six = ", ".join(f"{one:.6f}" for one in np.concatenate([gyr[k], acc[k]]) + other)
+            six = ", ".join(f"{value:.6f}" for value in np.concatenate([gyr[k], acc[k]]) + other)
             lines.append(f"IMU, {1e6 * t:.0f}, {number}, {six}, 0, 0, 41.2")
-        lines.append(f"MAG, {1e6 * t:.0f}, 0, " + ", ".join(f"{10 * one:.1f}" for one in mag[k]))
+        lines.append(
+            f"MAG, {1e6 * t:.0f}, 0, " + ", ".join(f"{10 * value:.1f}" for value in mag[k])
+        )
         lines.append(
             f"ATT, {1e6 * t:.0f}, 0, {roll[k]:.3f}, 0, {pitch[k]:.3f}, 0, {yaw[k] % 360:.3f}"
         )
@@ -322,7 +327,7 @@ def rostopic():
     """
     _, time, gyr, acc, _, quaternion = _parts()
     names = ["%time", "field.header.seq", "field.header.stamp", "field.header.frame_id"]
-    names += [f"field.orientation.{one}" for one in "xyzw"] + [
+    names += [f"field.orientation.{component}" for component in "xyzw"] + [
         f"field.orientation_covariance{k}" for k in range(9)
     ]
     names += [f"field.angular_velocity.{axis}" for axis in "xyz"]
@@ -334,11 +339,12 @@ def rostopic():
     for k, t in enumerate(time):
         stamp = f"{1_700_000_000 * 10**9 + round(1e9 * t)}"
         vectors = [
-            ",".join(f"{one:.8f}" for one in row[k])
+            ",".join(f"{component:.8f}" for component in row[k])
             for row in (np.roll(quaternion, -1, axis=1), gyr, acc)
         ]
         lines.append(
-            f"{stamp},{k},{stamp},imu_link," + ",".join(f"{one},{covariance}" for one in vectors)
+            f"{stamp},{k},{stamp},imu_link,"
+            + ",".join(f"{vector},{covariance}" for vector in vectors)
         )
     return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
 
@@ -356,7 +362,7 @@ def gnss_logger():
     for k, t in enumerate(time):
         for name, (_, values) in kinds.items():
             clock = f"{1.7e12 + 1000 * t:.0f},{9.1e13 + 1e9 * t:.0f}"
-            lines.append(f"{name},{clock}," + ",".join(f"{one:.6f}" for one in values[k]))
+            lines.append(f"{name},{clock}," + ",".join(f"{value:.6f}" for value in values[k]))
     return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1})
 
 
@@ -370,7 +376,7 @@ def arduino():
     """What a small board prints: a word before each line, counts, no time."""
     _, _, gyr, acc, _, _ = _parts()
     counts = np.column_stack([acc / GRAVITY * 16384, DEG * gyr * 131]).round()
-    rows = ["a/g:\t" + "\t".join(f"{one:.0f}" for one in row) for row in counts]
+    rows = ["a/g:\t" + "\t".join(f"{count:.0f}" for count in row) for row in counts]
     text = "\n".join(
         [
             "Initializing I2C devices...",
@@ -397,7 +403,7 @@ def matlab_mobile():
     ]
     rows = [
         f"01.03.2024 12:{int(t) // 60:02}:{t % 60:06.3f};"
-        + ";".join(f"{one:.6f}".replace(".", ",") for one in row)
+        + ";".join(f"{value:.6f}".replace(".", ",") for value in row)
         for t, row in zip(time, np.column_stack([gyr, acc, mag]), strict=True)
     ]
     return Form(
@@ -412,7 +418,7 @@ def polar():
     """
     _, time, gyr, acc, mag, _ = _parts()
 
-    def one(unit, values):
+    def table(unit, values):
         head = f"Phone timestamp;sensor timestamp [ns];X [{unit}];Y [{unit}];Z [{unit}] "
         rows = (
             f"2024-03-05T09:{int(t) // 60:02}:{t % 60:06.3f};"
@@ -422,9 +428,9 @@ def polar():
         return "\n".join([head, *rows])
 
     files = {
-        "ACC": one("mg", 1000 * acc / GRAVITY),
-        "GYRO": one("dps", DEG * gyr),
-        "MAGN": one("G", mag / 100),
+        "ACC": table("mg", 1000 * acc / GRAVITY),
+        "GYRO": table("dps", DEG * gyr),
+        "MAGN": table("G", mag / 100),
     }
     return Form(
         _zipped(
@@ -436,22 +442,24 @@ def polar():
 
 def core_motion():
     """JSON of an iPhone: dictionaries in dictionaries, and gravity down."""
-    found, entries = recording(), []
-    gravity = -_gravity(found) / GRAVITY
-    pushed = -found["accelerometer"] / GRAVITY - gravity
+    recorded, entries = recording(), []
+    gravity = -_gravity(recorded) / GRAVITY
+    pushed = -recorded["accelerometer"] / GRAVITY - gravity
 
-    def one(values, names="xyz"):
+    def components(values, names="xyz"):
         return dict(zip(names, values.round(6).tolist(), strict=True))
 
-    for k, time in enumerate(found["time"]):
+    for k, time in enumerate(recorded["time"]):
         entries.append(
             {
                 "timestamp": round(81234.5 + float(time), 5),
-                "attitude": {"quaternion": one(np.roll(found["quaternion"][k], -1), "xyzw")},
-                "rotationRate": one(found["gyroscope"][k]),
-                "gravity": one(gravity[k]),
-                "userAcceleration": one(pushed[k]),
-                "magneticField": {"field": one(found["magnetometer"][k]), "accuracy": 2},
+                "attitude": {
+                    "quaternion": components(np.roll(recorded["quaternion"][k], -1), "xyzw")
+                },
+                "rotationRate": components(recorded["gyroscope"][k]),
+                "gravity": components(gravity[k]),
+                "userAcceleration": components(pushed[k]),
+                "magneticField": {"field": components(recorded["magnetometer"][k]), "accuracy": 2},
             }
         )
     return Form(
@@ -473,7 +481,7 @@ def xsens_mtw_with_a_clock():
     names = [
         "PacketCounter",
         "SampleTimeFine",
-        *(f"{one}_{axis}" for one in ("Acc", "Gyr", "Mag") for axis in "XYZ"),
+        *(f"{sensor}_{axis}" for sensor in ("Acc", "Gyr", "Mag") for axis in "XYZ"),
     ]
     columns = [np.arange(len(time)) + 65_400, 99 + np.round(1e4 * time), acc, gyr, mag / 45]
     return Form(

@@ -137,11 +137,11 @@ def test_every_flipped_copy_is_caught(name, flip):
 
 
 def test_what_is_found_is_said_in_words():
-    found = convention_of(lambda q: Rotation.from_quat(q).as_matrix(), "quaternion")
+    convention = convention_of(lambda q: Rotation.from_quat(q).as_matrix(), "quaternion")
     assert (
-        found.takes == {"order": "xyzw"}
-        and found.inverse
-        and "scalar part comes last" in str(found)
+        convention.takes == {"order": "xyzw"}
+        and convention.inverse
+        and "scalar part comes last" in str(convention)
     )
 
 

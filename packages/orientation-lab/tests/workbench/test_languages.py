@@ -77,7 +77,9 @@ def converted(kind, values, convention):
 
 def expected(name, sequence, convention, arguments):
     function = getattr(orientation, name)
-    arguments = [one.tolist() if hasattr(one, "tolist") else one for one in arguments]
+    arguments = [
+        argument.tolist() if hasattr(argument, "tolist") else argument for argument in arguments
+    ]
     chosen = [sequence] if sequence else []
     result = (
         function(*chosen, *arguments) if name == "simple_dcm" else function(*arguments, *chosen)
@@ -86,27 +88,29 @@ def expected(name, sequence, convention, arguments):
 
 
 def cases():
-    found = []
+    all_cases = []
     for which, (name, sequence, convention) in enumerate(JOBS):
         kinds = list(FORMULAS[name][0].values())
         for arguments in given(name, which):
-            numbers = [converted(kind, one, convention) for kind, one in zip(kinds, arguments)]
-            found.append((which, numbers, expected(name, sequence, convention, arguments)))
-    return found
+            numbers = [
+                converted(kind, argument, convention) for kind, argument in zip(kinds, arguments)
+            ]
+            all_cases.append((which, numbers, expected(name, sequence, convention, arguments)))
+    return all_cases
 
 
-def close(found, wanted, name, sequence, convention):
+def close(result, wanted, name, sequence, convention):
     """Equal, and what has several numbers for one orientation by that orientation."""
-    found, wanted = np.array(found), np.array(wanted)
+    result, wanted = np.array(result), np.array(wanted)
     if name in ("body_fixed_from_dcm", "space_fixed_from_dcm"):
         make = getattr(orientation, "dcm_from_" + name.removesuffix("_from_dcm"))
-        found, wanted = (
-            make(np.radians(one) if convention.get("unit") else one, sequence)
-            for one in (found, wanted)
+        result, wanted = (
+            make(np.radians(numbers) if convention.get("unit") else numbers, sequence)
+            for numbers in (result, wanted)
         )
-    if name in ("quaternion_from_dcm", "rotation_vector_from_dcm") and found @ wanted < 0:
-        found = -found
-    return np.abs(found - wanted).max() <= 1e-11 * max(1, np.abs(wanted).max())
+    if name in ("quaternion_from_dcm", "rotation_vector_from_dcm") and result @ wanted < 0:
+        result = -result
+    return np.abs(result - wanted).max() <= 1e-11 * max(1, np.abs(wanted).max())
 
 
 def texts(language):
@@ -116,14 +120,14 @@ def texts(language):
 
 
 def hold(outputs):
-    for (which, numbers, wanted), found in zip(cases(), outputs, strict=True):
+    for (which, numbers, wanted), result in zip(cases(), outputs, strict=True):
         name, sequence, convention = JOBS[which]
-        assert close(found, wanted, name, sequence, convention), (
+        assert close(result, wanted, name, sequence, convention), (
             name,
             sequence,
             convention,
             numbers,
-            found,
+            result,
             wanted,
         )
 
@@ -157,10 +161,10 @@ def test_c_gives_the_same(tmp_path):
         functions.append(text.replace(own, f"f{which}").replace("#include <math.h>", ""))
     for which, numbers, wanted in cases():
         passed = ", ".join(
-            "(double[]){" + ", ".join(f"{number:.17g}" for number in one) + "}"
-            if isinstance(one, list)
-            else f"{one!r}"
-            for one in numbers
+            "(double[]){" + ", ".join(f"{number:.17g}" for number in argument) + "}"
+            if isinstance(argument, list)
+            else f"{argument!r}"
+            for argument in numbers
         )
         call = (
             f"f{which}({passed}, r)" if isinstance(wanted, list) else f"r[0] = f{which}({passed})"
@@ -184,12 +188,12 @@ def test_cpp_gives_the_same(tmp_path):
         )
     for which, numbers, _ in cases():
         passed = ", ".join(
-            f"std::array<double, {len(one)}>{{"
-            + ", ".join(f"{number:.17g}" for number in one)
+            f"std::array<double, {len(argument)}>{{"
+            + ", ".join(f"{number:.17g}" for number in argument)
             + "}"
-            if isinstance(one, list)
-            else f"{one!r}"
-            for one in numbers
+            if isinstance(argument, list)
+            else f"{argument!r}"
+            for argument in numbers
         )
         calls.append(f"show(f{which}({passed}));")
     source = (
@@ -209,10 +213,10 @@ def test_rust_gives_the_same(tmp_path):
         functions.append(text.replace(own, f"f{which}"))
     for which, numbers, wanted in cases():
         passed = ", ".join(
-            "&[" + ", ".join(f"{number:.17e}" for number in one) + "]"
-            if isinstance(one, list)
-            else f"{one:.17e}"
-            for one in numbers
+            "&[" + ", ".join(f"{number:.17e}" for number in argument) + "]"
+            if isinstance(argument, list)
+            else f"{argument:.17e}"
+            for argument in numbers
         )
         result = f"f{which}({passed})"
         calls.append(f"show(&{result if isinstance(wanted, list) else f'[{result}]'});")

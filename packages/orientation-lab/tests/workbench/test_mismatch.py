@@ -52,11 +52,11 @@ def by_faults(what):
     else:
         declared = dict(what)
         listed = table.readings(declared.pop("kind"), declared)
-    return {faults: [one for one in listed if one["faults"] == faults] for faults in range(4)}
+    return {faults: [entry for entry in listed if entry["faults"] == faults] for faults in range(4)}
 
 
 def random_chain(generator, declared, faults):
-    parts = [by_faults(tuple(sorted(one.items()))) for one in declared] + [by_faults("relations")]
+    parts = [by_faults(tuple(sorted(side.items()))) for side in declared] + [by_faults("relations")]
     shares = [shares for shares in itertools.product(range(4), repeat=3) if sum(shares) == faults
               and all(part[share] for part, share in zip(parts, shares))]  # fmt: skip
     chosen = [generator.choice(part[share]) for part, share in zip(parts, generator.choice(shares))]
@@ -93,23 +93,25 @@ def test_mixtures_of_up_to_three_faults():
         declared = known(generator), known(generator)
         truth = random_chain(generator, declared, generator.randint(1, 3))
         first, second = map(printed, both_sides(truth, random_orientations(2, orientations)))
-        found = explain(first, second, first_declared=declared[0], second_declared=declared[1])
-        same = same_meaning([truth, *found.chains], first, declared[0]["kind"])[1:]
-        assert any(same), (truth.words(), str(found))
+        explained = explain(first, second, first_declared=declared[0], second_declared=declared[1])
+        same = same_meaning([truth, *explained.chains], first, declared[0]["kind"])[1:]
+        assert any(same), (truth.words(), str(explained))
         first_place += same[0]
         if not same[0]:
-            assert found.chains[0].cost <= truth.cost
-        if found.verdict == "named":
+            assert explained.chains[0].cost <= truth.cost
+        if explained.verdict == "named":
             texts = zip((first, second), declared, strict=True)
-            one, other = (read_poses(text, "one", known["kind"]).numbers for text, known in texts)
+            all_wanted, other = (
+                read_poses(text, "one", known["kind"]).numbers for text, known in texts
+            )
             names = {"np": np, "Rotation": Rotation}
-            for wanted, second in zip(one, other, strict=True):
+            for wanted, second in zip(all_wanted, other, strict=True):
                 kind = declared[1]["kind"]
                 second = second.reshape(3, 3) if kind == "matrix" else second
-                mended = eval(mend.python_line(found.chains[0]), names | {"second": second})
-                mended = dcms_from_numbers(found.chains[0].first, np.ravel(mended)[None])
+                mended = eval(mend.python_line(explained.chains[0]), names | {"second": second})
+                mended = dcms_from_numbers(explained.chains[0].first, np.ravel(mended)[None])
                 assert np.allclose(
-                    mended, dcms_from_numbers(found.chains[0].first, wanted[None]), atol=1e-3
+                    mended, dcms_from_numbers(explained.chains[0].first, wanted[None]), atol=1e-3
                 )
     assert first_place >= 0.95 * count
 
@@ -128,11 +130,11 @@ def test_the_pose_that_is_asked_for_decides(start):
         truth = random_chain(generator, kinds, generator.randint(1, 2))
         for asked in range(3):
             texts = [printed(numbers) for numbers in both_sides(truth, np.array(dcms))]
-            found = explain(*texts, first_declared=kinds[0], second_declared=kinds[1])
-            if asked and not found.further_pose:
+            explained = explain(*texts, first_declared=kinds[0], second_declared=kinds[1])
+            if asked and not explained.further_pose:
                 break
             turns = next(
-                turns for words, turns in table.FURTHER_POSES if words == found.further_pose
+                turns for words, turns in table.FURTHER_POSES if words == explained.further_pose
             )
             dcm = dcms[-1]
             for name, degrees in turns:
@@ -140,11 +142,11 @@ def test_the_pose_that_is_asked_for_decides(start):
                 dcm = np.array(turn) @ dcm
             dcms.append(dcm)
         asked_twice += asked == 2
-        assert found.verdict in ("named", "same") or found.names, (texts, str(found))
+        assert explained.verdict in ("named", "same") or explained.names, (texts, str(explained))
         # Orders that nobody uses are not asked about.
-        if found.names and usual_orders(truth):
-            assert shows(found, truth, kinds), (texts, truth.words(), str(found))
-        assert same_meaning([truth, *found.chains], texts[0], kinds[0]["kind"])[1]
+        if explained.names and usual_orders(truth):
+            assert shows(explained, truth, kinds), (texts, truth.words(), str(explained))
+        assert same_meaning([truth, *explained.chains], texts[0], kinds[0]["kind"])[1]
     assert asked_twice <= 0.01 * count
 
 
@@ -374,11 +376,12 @@ SPELLED = {
 @pytest.mark.parametrize("where", SPELLED)
 def test_numbers_as_programs_print_them(where):
     """Whatever stands around the numbers, the orientation is the one that was printed."""
-    found = explain(printed([DCM], 6), SPELLED[where])
+    explained = explain(printed([DCM], 6), SPELLED[where])
     order = "scalar part comes last"
     assert (
-        found.verdict == "same" or [fault for fault in found.faults if order not in fault] == []
-    ), str(found)
+        explained.verdict == "same"
+        or [fault for fault in explained.faults if order not in fault] == []
+    ), str(explained)
 
 
 def test_angles_as_programs_print_them():
@@ -474,26 +477,26 @@ def test_every_fault_leads_to_a_section_and_to_a_checked_question():
         assert questions
         for (address, title), folder in (
             (section, "chapters"),
-            *((one, "tests/solutions") for one in questions),
+            *((question, "tests/solutions") for question in questions),
         ):
             page, _, anchor = address.partition("#")
             cells = json.loads(
                 (REPOSITORY / folder / Path(page).with_suffix(".ipynb").name).read_text("utf8")
             )["cells"]
-            below, found = False, []
+            below, sources = False, []
             for cell in cells:
                 source = "".join(cell["source"])
                 headings = [line for line in source.split("\n") if line.startswith("#")]
                 if cell["cell_type"] == "markdown" and headings:
                     below = anchor in map(slug, headings)
                 if below:
-                    found.append(source)
-            assert found and title, address
+                    sources.append(source)
+            assert sources and title, address
             if folder != "chapters":
                 checked = [
                     name
                     for name in re.findall(
-                        r"check\(['\"]([^'\"]+)['\"]", "\n".join(found), re.MULTILINE
+                        r"check\(['\"]([^'\"]+)['\"]", "\n".join(sources), re.MULTILINE
                     )
                 ]
                 assert checked and all(
@@ -592,17 +595,17 @@ def test_every_reading_comes_back():
 
 @pytest.mark.parametrize("case", PASTED, ids=lambda case: case["thread"])
 def test_numbers_that_were_pasted_in_threads(case):
-    found = explain(
+    explained = explain(
         case["first"],
         case["second"],
         first_declared=case["known"][0],
         second_declared=case["known"][1],
     )
-    assert found.verdict == case["verdict"], str(found)
-    assert all(words in "; ".join(found.faults) for words in case["words"]), str(found)
+    assert explained.verdict == case["verdict"], str(explained)
+    assert all(words in "; ".join(explained.faults) for words in case["words"]), str(explained)
 
 
-def shows(found, truth, known):
+def shows(explained, truth, known):
     """Whether one of the answers to what is asked is the true description.
 
     The orders of quaternions must be the true ones, and the other faults the same. Of a fault that
@@ -626,7 +629,7 @@ def shows(found, truth, known):
     return any(
         [side.get("order") for side in name.declare] == orders
         and without_sides(name.faults) == right
-        for name in found.names
+        for name in explained.names
     )
 
 

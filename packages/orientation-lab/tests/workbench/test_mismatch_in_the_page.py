@@ -62,7 +62,7 @@ def in_the_page(cases):
 
 def in_python(case):
     try:
-        found = explain(
+        explanation = explain(
             case["first"],
             case["second"],
             first_declared=case["declared"][0],
@@ -75,15 +75,17 @@ def in_python(case):
     except ValueError as error:
         return {"error": str(error)}
     return {
-        "verdict": found.verdict,
-        "faults": list(found.faults),
-        "left": len(found.chains),
-        "residual": found.residual,
-        "further": found.further_pose,
-        "question": found.question,
-        "names": [[name.condition, list(name.faults), list(name.declare)] for name in found.names],
-        "mended": [write(found.chains[0]) for write in (mend.python_line, mend.formula)]
-        if found.has_line
+        "verdict": explanation.verdict,
+        "faults": list(explanation.faults),
+        "left": len(explanation.chains),
+        "residual": explanation.residual,
+        "further": explanation.further_pose,
+        "question": explanation.question,
+        "names": [
+            [name.condition, list(name.faults), list(name.declare)] for name in explanation.names
+        ],
+        "mended": [write(explanation.chains[0]) for write in (mend.python_line, mend.formula)]
+        if explanation.has_line
         else [],
     }
 
@@ -135,8 +137,8 @@ def special():
     for spelling in QUATERNIONS.values():
         parts = dict(zip("wxyz", (f"{entry:.6f}" for entry in quaternion_from_dcm(dcm))))
         yield case(spelling.format(**parts), printed([dcm], 6))
-    for one in PASTED:
-        yield case(one["first"], one["second"], one["known"])
+    for pasted in PASTED:
+        yield case(pasted["first"], pasted["second"], pasted["known"])
     for first, second, *_ in EXAMPLES.values():
         yield case(first, second)
     for text in SPELLED.values():
@@ -176,13 +178,13 @@ def test_both_say_the_same():
         *itertools.islice(angles_that_fit_in_many_ways(), 0, None, 4),
         *mixtures(12, seed=8),
     ]
-    for one, found in zip(cases, in_the_page(cases)):
-        wanted = in_python(one)
+    for asked, answer in zip(cases, in_the_page(cases)):
+        wanted = in_python(asked)
         if "residual" in wanted and wanted["residual"] is not None:
-            assert found.pop("residual") == pytest.approx(
+            assert answer.pop("residual") == pytest.approx(
                 wanted.pop("residual"), rel=1e-6, abs=1e-9
-            ), one
-        assert found == wanted, one
+            ), asked
+        assert answer == wanted, asked
 
 
 BITS = [
@@ -219,19 +221,19 @@ def test_both_say_the_same_of_broken_text():
         *TABLES,
         *SPELLED.values(),
         *SPELLINGS.values(),
-        *(one[side] for one in PASTED for side in ("first", "second")),
+        *(pasted[side] for pasted in PASTED for side in ("first", "second")),
     ]
     cases = [
         case(broken(generator, generator.choice(texts)), "0.9205 0.3602 -0.0702 0.1343")
         for _ in range(80)
     ]
-    for one, found in zip(cases, in_the_page(cases)):
-        wanted = in_python(one)
+    for asked, answer in zip(cases, in_the_page(cases)):
+        wanted = in_python(asked)
         if wanted.get("residual") is not None:
-            assert found.pop("residual") == pytest.approx(
+            assert answer.pop("residual") == pytest.approx(
                 wanted.pop("residual"), rel=1e-6, abs=1e-9
-            ), one
-        assert found == wanted, one
+            ), asked
+        assert answer == wanted, asked
 
 
 def test_every_example_of_the_page_shows_what_it_is_there_for():
@@ -239,7 +241,7 @@ def test_every_example_of_the_page_shows_what_it_is_there_for():
     for first, second, *sides in EXAMPLES.values():
         known = [dict(side) for side in sides] or [{}, {}]
         programs = [side.pop("program", None) for side in known]
-        found = explain(
+        explanation = explain(
             first,
             second,
             first_program=programs[0],
@@ -247,5 +249,5 @@ def test_every_example_of_the_page_shows_what_it_is_there_for():
             first_declared=known[0],
             second_declared=known[1],
         )
-        verdicts.append(found.verdict)
+        verdicts.append(explanation.verdict)
     assert verdicts == ["named"] * 7 + ["undecided", "unrelated"]

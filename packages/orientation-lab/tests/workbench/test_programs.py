@@ -111,8 +111,8 @@ PROMISES = {
 @pytest.mark.parametrize("promise", PROMISES)
 def test_programs_that_keep_their_promises_differ_by_nothing_else(promise):
     first_program, first, second_program, second = PROMISES[promise]
-    found = explain(first, second, first_program=first_program, second_program=second_program)
-    assert found.verdict == "same", str(found)
+    explanation = explain(first, second, first_program=first_program, second_program=second_program)
+    assert explanation.verdict == "same", str(explanation)
 
 
 ANSWERS = json.loads(STORED.read_text("utf8"))
@@ -129,7 +129,7 @@ def test_programs_that_were_run_answered_as_the_table_says(program):
         known = {
             name: answer["form"][name] for name in ("kind", "sequence") if name in answer["form"]
         }
-        found = explain(
+        explanation = explain(
             truth,
             np.array(answer["numbers"]),
             first_program="this book",
@@ -137,7 +137,7 @@ def test_programs_that_were_run_answered_as_the_table_says(program):
             second_declared=known,
             noise=2e-5,
         )
-        assert found.verdict == "same", (answer["asked"], str(found))
+        assert explanation.verdict == "same", (answer["asked"], str(explanation))
 
 
 def test_what_claims_to_have_been_run_has_been():
@@ -148,12 +148,16 @@ def test_what_claims_to_have_been_run_has_been():
 
 
 def test_what_goes_beyond_the_manuals_is_among_the_names_shown():
-    found = explain(printed(QUATERNIONS), printed(QUATERNIONS * [-1, 1, -1, 1] * [-1, -1, -1, 1]),
-                    first_program="ros", second_program="unreal")  # fmt: skip
+    explanation = explain(
+        printed(QUATERNIONS),
+        printed(QUATERNIONS * [-1, 1, -1, 1] * [-1, -1, -1, 1]),
+        first_program="ros",
+        second_program="unreal",
+    )
     # Angles on the way explain the same numbers, so the true name stands among those shown.
-    assert found.question and [
+    assert explanation.question and [
         name.declare
-        for name in found.names
+        for name in explanation.names
         if len(name.faults) == 1 and "the conjugate" in name.faults[0]
     ] == [
         (

@@ -49,11 +49,11 @@ def test_a_quaternion_against_its_headings_is_seen():
 
 def test_an_honest_recording_has_no_red_light_and_its_numbers_are_right():
     recording = simulate(11)
-    found = examine(as_text(recording, quaternion=True), "honest")
-    assert not [verdict for verdict in found.verdicts if verdict.light == "wrong"], str(found)
-    assert found.facts["scale of the gyroscope"] == pytest.approx(1, abs=0.01)
-    assert sum(one.still for one in found.still) >= 4
-    [judgement] = found.judgements
+    examined = examine(as_text(recording, quaternion=True), "honest")
+    assert not [verdict for verdict in examined.verdicts if verdict.light == "wrong"], str(examined)
+    assert examined.facts["scale of the gyroscope"] == pytest.approx(1, abs=0.01)
+    assert sum(stretch.still for stretch in examined.still) >= 4
+    [judgement] = examined.judgements
     true = recording["truth"].inv().as_matrix()[np.searchsorted(recording["time"], judgement.times)]
     tilt = np.degrees(
         np.arccos(np.clip(np.einsum("ni,ni->n", true[:, :, 2], judgement.dcms[:, :, 2]), -1, 1))
@@ -81,9 +81,11 @@ def test_on_a_foot_pushes_neither_accuse_a_unit_nor_exclude_the_true_axes():
 
 def test_a_hand_is_told_from_a_table():
     held = examine([DATA / "x_imu_sensors.csv"], rate=256, judged=False)
-    assert held.light("stillness") == "look" and not any(one.still for one in held.still)
+    assert held.light("stillness") == "look" and not any(stretch.still for stretch in held.still)
     lying = examine([DATA / "ngimu_sensors.csv"], judged=False)
-    assert lying.light("stillness") == "as it should be" and any(one.still for one in lying.still)
+    assert lying.light("stillness") == "as it should be" and any(
+        stretch.still for stretch in lying.still
+    )
 
 
 REAL = {"x_imu": (256, True), "ngimu": (None, True), "x_imu3": (None, False), "xsens": (50, False)}
@@ -126,18 +128,24 @@ def scrambled(ways, seed):
             printed = quaternions(turned.swapaxes(-1, -2) if flipped else turned)
             printed = np.roll(printed, -1, axis=1) if order == "scalar last" else printed
             candidates = {
-                one: dcm_of_quaternions(printed, one) for one in ("scalar first", "scalar last")
+                assumed: dcm_of_quaternions(printed, assumed)
+                for assumed in ("scalar first", "scalar last")
             }
-            found = readings(gyroscope.time, rates @ axes.T, quaternion.time, candidates)
-            best = [one for one in found if one.disagreement < found[0].disagreement + 1e-6]
+            ranked = readings(gyroscope.time, rates @ axes.T, quaternion.time, candidates)
+            best = [
+                reading
+                for reading in ranked
+                if reading.disagreement < ranked[0].disagreement + 1e-6
+            ]
             yield (
                 any(
-                    (one.order, one.conjugate) == (order, flipped)
-                    and np.allclose(one.mounting, mounting @ axes.T)
-                    for one in best
+                    (reading.order, reading.conjugate) == (order, flipped)
+                    and np.allclose(reading.mounting, mounting @ axes.T)
+                    for reading in best
                 ),
                 len(best),
-                next(one for one in found if one not in best).disagreement / found[0].disagreement,
+                next(reading for reading in ranked if reading not in best).disagreement
+                / ranked[0].disagreement,
             )
 
 
@@ -153,10 +161,10 @@ def test_scrambled_conventions_are_found():
     mounting give the same orientations, but for one turn of the ground. Only gravity tells them
     apart.
     """
-    found = list(scrambled(8, 25))
-    assert all(right for right, _, _ in found)
-    assert max(equal for _, equal, _ in found) == 2
-    assert min(margin for _, _, margin in found) > 1.4
+    results = list(scrambled(8, 25))
+    assert all(right for right, _, _ in results)
+    assert max(equal for _, equal, _ in results) == 2
+    assert min(margin for _, _, margin in results) > 1.4
 
 
 # --- reading --------------------------------------------------------------------------------------
@@ -178,20 +186,20 @@ def test_many_forms_hold_one_recording(form):
     if form.__name__ in TOLD:
         with pytest.raises(RecordingError, match="--columns"):
             read_content(given.content, "recording")
-    found = read_content(given.content, "recording", columns=TOLD.get(form.__name__, ""))
-    assert set(found.groups) == set(given.scales), {
-        kind: group.names for kind, group in found.groups.items()
+    content = read_content(given.content, "recording", columns=TOLD.get(form.__name__, ""))
+    assert set(content.groups) == set(given.scales), {
+        kind: group.names for kind, group in content.groups.items()
     }
-    assert found.counted == given.counted
+    assert content.counted == given.counted
     if not given.counted:
-        steps = np.diff(found.groups["gyroscope"].time)
+        steps = np.diff(content.groups["gyroscope"].time)
         assert np.median(steps) == pytest.approx(0.01, rel=1e-3) and (steps > 0).all()
     for kind, allowed in (("gyroscope", 0.02), ("accelerometer", 0.02), ("magnetometer", 0.06)):
         if kind in given.scales:
-            off = found.groups[kind].values / given.scales[kind] - true[kind]
-            assert np.abs(off).max() < allowed, (kind, found.groups[kind].names)
+            off = content.groups[kind].values / given.scales[kind] - true[kind]
+            assert np.abs(off).max() < allowed, (kind, content.groups[kind].names)
     if "quaternion" in given.scales:
-        values = found.groups["quaternion"].values
+        values = content.groups["quaternion"].values
         first, last = (
             np.abs(np.roll(values, k, axis=1) - true["quaternion"]).max() for k in (0, 1)
         )
@@ -288,7 +296,7 @@ SAID = [
     # A log of two kinds of lines, between spaces, with an empty line.
     (
         "#gyro time x y z\n#accel time x y z\n\n"
-        + "".join(f"{one} {k / 100} {k % 7} {k % 5} 9\n" for k in range(99) for one in KINDS),
+        + "".join(f"{kind} {k / 100} {k % 7} {k % 5} 9\n" for k in range(99) for kind in KINDS),
         "time, in s|",
     ),
     (lines(lambda k: f"label{k // 10}", f"which,{SIX}", 6000), "accelerometer"),
@@ -325,10 +333,10 @@ SAID = [
 
 @pytest.mark.parametrize(("text", "words"), SAID)
 def test_times_and_further_columns_are_told(text, words):
-    found = read_content(text, "recording")
-    said = f"{found.clock}|{', '.join(found.unused)}|{list(found.groups)}|{found.remarks}"
-    assert words in said and {"gyroscope", "accelerometer"} <= set(found.groups), said
-    assert all((np.diff(group.time) >= 0).all() for group in found.groups.values())
+    content = read_content(text, "recording")
+    said = f"{content.clock}|{', '.join(content.unused)}|{list(content.groups)}|{content.remarks}"
+    assert words in said and {"gyroscope", "accelerometer"} <= set(content.groups), said
+    assert all((np.diff(group.time) >= 0).all() for group in content.groups.values())
 
 
 UNITS = (
@@ -341,26 +349,26 @@ UNITS = (
 @pytest.mark.parametrize("form", FORMS)
 def test_units_and_axes_of_many_forms_come_out_by_themselves(form):
     given = form()
-    found = examine(
+    examined = examine(
         given.content,
         "recording",
         100 if given.counted else None,
         TOLD.get(form.__name__, ""),
         judged=False,
     )
-    words = {verdict.about: verdict.words for verdict in found.verdicts}
+    words = {verdict.about: verdict.words for verdict in examined.verdicts}
     of_rates, of_forces = (given.scales[kind] for kind in ("gyroscope", "accelerometer"))
     assert words["unit of the gyroscope"].startswith(UNITS[0].get(of_rates, "counts"))
     assert words["unit of the accelerometer"].startswith(UNITS[1].get(of_forces, "counts"))
     assert words["axes of the gyroscope"] == "those of the accelerometer"
-    assert found.facts["scale of the gyroscope"] == pytest.approx(1, abs=0.03)
-    assert not [verdict for verdict in found.verdicts if verdict.light == "wrong"], str(found)
+    assert examined.facts["scale of the gyroscope"] == pytest.approx(1, abs=0.03)
+    assert not [verdict for verdict in examined.verdicts if verdict.light == "wrong"], str(examined)
 
 
 def test_an_accelerometer_that_says_down_is_told():
     """An iPhone's does. A ground with z down would look the same: both are said."""
-    found = examine(core_motion().content, "phone", judged=False)
-    assert found.light("level") == "look" and "-z axis" in str(found)
+    examined = examine(core_motion().content, "phone", judged=False)
+    assert examined.light("level") == "look" and "-z axis" in str(examined)
 
 
 def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
@@ -425,7 +433,7 @@ def test_folders_and_zips_in_them_are_opened_and_a_broken_table_is_told(tmp_path
     for kind in ("gyroscope", "accelerometer", "magnetometer"):
         rows = np.column_stack([given["time"], given[kind]])
         files[f"{kind}.csv"] = "\n".join(
-            ["time,x,y,z", *(",".join(f"{one:.6f}" for one in row) for row in rows)]
+            ["time,x,y,z", *(",".join(f"{value:.6f}" for value in row) for row in rows)]
         )
     (tmp_path / "deep").mkdir()
     with zipfile.ZipFile(tmp_path / "deep" / "walk.zip", "w") as archive:
@@ -439,9 +447,9 @@ def test_folders_and_zips_in_them_are_opened_and_a_broken_table_is_told(tmp_path
     torn = [line if k % 9 else line.replace(",", ",x", 1) for k, line in enumerate(lines)]
     (tmp_path / "magnetometer.csv").write_text("\n".join(torn))
     for source in (tmp_path, sorted(tmp_path.iterdir())):
-        found = read_content(source)
-        assert set(found.groups) == {"gyroscope", "accelerometer"}
-        assert "line 10, column 2" in " ".join(found.remarks) and len(found.remarks) == 1
+        content = read_content(source)
+        assert set(content.groups) == {"gyroscope", "accelerometer"}
+        assert "line 10, column 2" in " ".join(content.remarks) and len(content.remarks) == 1
     # Two walks with the same columns.
     gyroscope = read_content(tmp_path / "deep").groups["gyroscope"].names
     (tmp_path / "deep" / "later.zip").write_bytes((tmp_path / "deep" / "walk.zip").read_bytes())
@@ -481,9 +489,9 @@ def spoilt(kind, change):
 def test_strange_recordings_are_told_and_never_a_crash(given, words):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = examine(as_text(given, quaternion=True), "strange")
-        assert words in " ".join(str(found).split())
-        assert as_csv(found) and as_code(found)
+        examined = examine(as_text(given, quaternion=True), "strange")
+        assert words in " ".join(str(examined).split())
+        assert as_csv(examined) and as_code(examined)
 
 
 def test_the_command_writes_report_and_corrected_recording(tmp_path, capsys):
@@ -502,11 +510,11 @@ def test_the_code_of_the_report_corrects_the_file_as_the_bench_did():
     given = simulate(6) | {}
     given["gyroscope"] = np.degrees(given["gyroscope"])[:, [1, 0, 2]] * [1, -1, 1] / 1.3 + 2
     given["magnetometer"] = given["magnetometer"] @ np.diag([0.8, 1, 1.2]) + [20, -10, 5]
-    found = examine(as_text(given, digits=9), judged=False)
+    examined = examine(as_text(given, digits=9), judged=False)
     names = {kind: given[kind] for kind in ("gyroscope", "accelerometer", "magnetometer")}
-    exec(as_code(found), names)
+    exec(as_code(examined), names)
     for name in ("rates", "forces", "field"):
-        assert np.allclose(names[name], getattr(found, name), atol=1e-6), name
+        assert np.allclose(names[name], getattr(examined, name), atol=1e-6), name
     assert np.abs(names["rates"] - simulate(6)["gyroscope"]).max() < np.radians(5)
 
 
@@ -518,8 +526,8 @@ def test_an_unknown_scale_of_the_gyroscope_is_found_to_three_per_cent(count=3):
     for seed in range(count):
         recording, scale = simulate(seed, poses=4 + seed % 3), random.uniform(0.5, 2)
         recording["gyroscope"] = recording["gyroscope"] / scale
-        found = examine(as_text(recording), judged=False).facts["scale of the gyroscope"]
-        assert found == pytest.approx(scale, rel=0.03)
+        estimate = examine(as_text(recording), judged=False).facts["scale of the gyroscope"]
+        assert estimate == pytest.approx(scale, rel=0.03)
 
 
 def spoilt_by_iron(seed, poses, random):
@@ -534,13 +542,13 @@ def test_soft_and_hard_iron_are_taken_away_to_a_degree_of_heading(count=3):
     random = np.random.default_rng(count)
     for seed in range(count):
         recording = spoilt_by_iron(seed, 8, random)
-        found = examine(as_text(recording), judged=False)
-        level = np.einsum("nji,nj->ni", recording["truth"].inv().as_matrix(), found.field)
+        examined = examine(as_text(recording), judged=False)
+        level = np.einsum("nji,nj->ni", recording["truth"].inv().as_matrix(), examined.field)
         off = np.degrees(np.arctan2(level[:, 1], level[:, 0]))
-        by_pose = [np.mean(off[one.first : one.last]) for one in found.still]
-        assert found.light("offset of the magnetometer") == "wrong" and np.abs(by_pose).max() < 1, (
-            seed
-        )
+        by_pose = [np.mean(off[stretch.first : stretch.last]) for stretch in examined.still]
+        assert (
+            examined.light("offset of the magnetometer") == "wrong" and np.abs(by_pose).max() < 1
+        ), seed
 
 
 def test_iron_is_refused_where_the_turns_do_not_suffice():
@@ -557,8 +565,8 @@ def test_iron_is_refused_where_the_turns_do_not_suffice():
         + [30, 0, 0]
         + 0.3 * random.normal(size=(2000, 3)),
     }
-    found = examine(as_text(recording), judged=False)
-    assert found.light("offset of the magnetometer") == "cannot tell", str(found)
+    examined = examine(as_text(recording), judged=False)
+    assert examined.light("offset of the magnetometer") == "cannot tell", str(examined)
 
 
 def test_a_magnetometer_without_a_gyroscope_is_put_right_by_lengths_or_refused():
@@ -570,18 +578,18 @@ def test_a_magnetometer_without_a_gyroscope_is_put_right_by_lengths_or_refused()
         rows = np.column_stack([given["time"], given["accelerometer"], given["magnetometer"]])
         names = ["time (s)", *NAMES[4:]]
         lines = [",".join(f"{value:.5f}" for value in row) for row in rows]
-        found = examine("\n".join([",".join(names), *lines]), judged=False)
-        assert "no usable column has the name of a gyroscope" in " ".join(str(found).split())
+        examined = examine("\n".join([",".join(names), *lines]), judged=False)
+        assert "no usable column has the name of a gyroscope" in " ".join(str(examined).split())
         if poses < 9:
-            assert found.light("offset of the magnetometer") in ("cannot tell", "wrong")
+            assert examined.light("offset of the magnetometer") in ("cannot tell", "wrong")
             continue
         ups = given["truth"].inv().apply([0, 0, 1])
         dips = np.degrees(
-            np.arcsin((found.field * ups).sum(axis=1) / np.linalg.norm(found.field, axis=1))
+            np.arcsin((examined.field * ups).sum(axis=1) / np.linalg.norm(examined.field, axis=1))
         )
-        lengths = np.linalg.norm(found.field, axis=1)
+        lengths = np.linalg.norm(examined.field, axis=1)
         assert lengths.std() < 0.02 and dips.std() < 2.5
-        assert found.light("axes of the magnetometer") == "cannot tell"
+        assert examined.light("axes of the magnetometer") == "cannot tell"
 
 
 def test_an_ellipsoid_is_found_up_to_a_turn_or_refused(count=8):
@@ -592,8 +600,8 @@ def test_an_ellipsoid_is_found_up_to_a_turn_or_refused(count=8):
         ways = unit(random.normal(size=(60, 3)))
         values = 45 * ways @ soft.T + random.uniform(-60, 60, 3) + 0.2 * random.normal(size=(60, 3))
         fit = fit_ellipsoid(values)
-        found = (values - fit.offset) @ fit.shape.T / fit.strength
-        off = np.linalg.norm(np.cross(found, ways), axis=1) / np.linalg.norm(found, axis=1)
+        corrected = (values - fit.offset) @ fit.shape.T / fit.strength
+        off = np.linalg.norm(np.cross(corrected, ways), axis=1) / np.linalg.norm(corrected, axis=1)
         assert np.degrees(np.arcsin(off)).max() < 2 and fit.uncertainty < 0.03
         level = 45 * unit(ways * [1, 1, 0.01])  # all the poses lie nearly in a plane
         assert fit_ellipsoid(level @ soft.T + 20 + 0.2 * random.normal(size=(60, 3))) is None

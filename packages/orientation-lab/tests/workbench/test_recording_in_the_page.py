@@ -18,8 +18,8 @@ def test_what_is_dropped_is_judged_and_can_be_kept(tmp_path, monkeypatch):
     given = simulate(3)
     given["magnetometer"] = given["magnetometer"] + [20.0, -10, 15]
     (tmp_path / "dropped" / "walk <1>.csv").write_text(as_text(given, quaternion=True), "utf8")
-    found = judged(convention="xyzw")
-    shown = found._repr_html_()
+    report = judged(convention="xyzw")
+    shown = report._repr_html_()
     kept = base64.b64decode(
         re.search(r'download="report.html" href="data:text/html;base64,([^"]+)"', shown)[1]
     ).decode()
@@ -32,10 +32,10 @@ def test_what_is_dropped_is_judged_and_can_be_kept(tmp_path, monkeypatch):
         assert page.count("<svg") >= 3 and "<1>" not in page and "<script" not in page
     rows = re.search(r'download="corrected.csv" href="data:text/csv;base64,([^"]+)"', shown)[1]
     heading, *corrected = base64.b64decode(rows).decode().splitlines()
-    assert heading.endswith("qx,qy,qz,qw") and len(corrected) == len(found.examined.time)
+    assert heading.endswith("qx,qy,qz,qw") and len(corrected) == len(report.examined.time)
     # Of several files, the first need not be the recording.
     (tmp_path / "dropped" / "about.txt").write_text("Dear all,\nI am here.\nBye\n", "utf8")
-    assert all("offset of the magnetometer" in repr(each) for each in (found, judged()))
+    assert all("offset of the magnetometer" in repr(each) for each in (report, judged()))
 
 
 def test_what_cannot_be_judged_says_why_with_line_and_column(tmp_path):

@@ -49,11 +49,11 @@ def said_of_mixups(form, count, seed):
     rng, score = np.random.default_rng([seed, len(form)]), Counter()
     for _ in range(count):
         first, second, words = mixed_up(rng)
-        found = explain(printed(first, form), printed(second, form))
-        faults = [found.faults] if found.verdict in ("named", "same") else []
-        faults += [name.faults for name in found.names]
+        explanation = explain(printed(first, form), printed(second, form))
+        faults = [explanation.faults] if explanation.verdict in ("named", "same") else []
+        faults += [name.faults for name in explanation.names]
         true = any(word in "; ".join(each) for each in faults for word in words)
-        score[f"{found.verdict}, {'' if true else 'not '}the truth"] += 1
+        score[f"{explanation.verdict}, {'' if true else 'not '}the truth"] += 1
     return score
 
 
