@@ -99,8 +99,8 @@ class Contract(AsJson):
 
     def locker(self, fingerprint: str) -> Locker | None:
         """Return the locker of a known answer's fingerprint, or ``None``."""
-        found = self.known.get(fingerprint)
-        return None if found is None else Locker.from_json(found, f"{self.title}: 'known'")
+        content = self.known.get(fingerprint)
+        return None if content is None else Locker.from_json(content, f"{self.title}: 'known'")
 
     @property
     def variant(self) -> Variant:
