@@ -238,7 +238,7 @@ export const axisOf = (start) => axisAngleFromDcm(frames(start).D);
 
 // The position of the eye where it differs from the usual one.
 // Its azimuth and height, and how close it is, from 0 to 1.
-export const EYES = { 'one-motor': [52, 17, 0.7], 'nine-shadows': [52, 17, 0.7], 'looking-back': [52, 38, 0.3], lock: [52, 40, 0], 'one-turn': [52, 17, 0.5],
+export const EYES = { 'one-motor': [52, 17, 0.5], 'nine-shadows': [52, 17, 0.5], 'looking-back': [52, 38, 0.3], lock: [52, 40, 0], 'one-turn': [52, 17, 0.5],
   'two-mirrors': [25, 40, 0.6], 'four-numbers': [52, 17, 0.6], 'not-home': [8, 24, 0.6], 'between-poses': [64, 50, 0.7], 'it-moves': [52, 17, 0.8] };
 
 // The course of the angles and the rest at a moment of a stop; start: the pose in which the stop was entered. Each
