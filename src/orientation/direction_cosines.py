@@ -13,6 +13,7 @@ from .numbers_and_symbols import (
     evaluate_numbers,
     is_symbolic,
     item_in_words,
+    narrow_type,
     number_array,
     symbol_components,
 )
@@ -146,6 +147,16 @@ def check_dcm(dcm: Values) -> None:
 
 def _as_they_are(f: Functions[Component], *entries: Component) -> Sequence[Component]:
     return entries
+
+
+def dcm_array(value: Values, name: str) -> Array:
+    """Return direction cosine matrices as floats, or raise an error.
+
+    What was valid in single precision becomes valid to the digits of a float.
+    """
+    array = number_array(value, (3, 3), name)
+    check_dcm(value)
+    return nearest_dcm(array).dcm if narrow_type([value]) else array
 
 
 def demand_dcm(

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from .direction_cosines import check_dcm
+from .direction_cosines import dcm_array
 from .numbers_and_symbols import covariance_array, number_array
 from .observations import unit_directions
 from .rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
@@ -135,8 +135,7 @@ class MultiplicativeKalmanFilter:
     ) -> None:
         import numpy
 
-        self.dcm = number_array(dcm, (3, 3), "dcm")
-        check_dcm(self.dcm)
+        self.dcm = dcm_array(dcm, "dcm")
         batch = self.dcm.shape[:-2]
         self.bias = numpy.zeros((*batch, 3))
         self.covariance = numpy.broadcast_to(covariance_array(covariance, 6), (*batch, 6, 6)).copy()
@@ -245,10 +244,10 @@ class MultiplicativeKalmanFilter:
         """
         import numpy
 
-        measured = number_array(observed, (3, 3), "observed")
-        check_dcm(measured)
         # 6 and 7, for an orientation
-        difference = rotation_vector_from_dcm(measured @ self.dcm.swapaxes(-1, -2))
+        difference = rotation_vector_from_dcm(
+            dcm_array(observed, "observed") @ self.dcm.swapaxes(-1, -2)
+        )
         return self._correct(difference, numpy.eye(3), covariance_array(covariance, 3), gate)
 
     def _correct(self, nu: Array, slope: Array, R: Array, gate: float) -> Innovation:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .direction_cosines import check_dcm, dcm_excess, explain_dcm, nearest_dcm
+from .direction_cosines import dcm_array, dcm_excess, explain_dcm, nearest_dcm
 from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate_numbers, number_array
 from .quaternions import dcm_from_quaternion, quaternion_components_from_dcm
 from .rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
@@ -119,10 +119,9 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
     """
     if metric not in METRICS:
         raise ValueError(f"metric must be 'entries' or 'angle', not {metric!r}")
-    dcms = number_array(dcms, (3, 3), "dcms")
+    dcms = dcm_array(dcms, "dcms")
     if dcms.ndim != 3 or not len(dcms):
         raise ValueError(f"dcms must have shape (n, 3, 3) with at least one item, not {dcms.shape}")
-    check_dcm(dcms)
     shares = _shares(weights, len(dcms))
     average = (shares @ dcms.reshape(-1, 9)).reshape(3, 3)
     if metric == "entries":

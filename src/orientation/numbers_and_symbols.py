@@ -565,6 +565,13 @@ def _unmasked(value: Given) -> Given | Array:
 def _not_numbers(name: str, value: object) -> TypeError:
     return TypeError(
         f"{name} must hold real numbers or SymPy expressions in a regular shape, not {value!r}"
+        + (
+            ". For a rotation of SciPy, use dcm_from_scipy_rotation"
+            if hasattr(value, "as_matrix")
+            else ". Join numbers and arrays with numpy.stack(numpy.broadcast_arrays(...), axis=-1)"
+            if isinstance(value, (list, tuple)) and any(getattr(part, "ndim", 0) for part in value)
+            else ""
+        )
     )
 
 

@@ -103,8 +103,7 @@ def test_equal_in_other_forms_quickly_and_without_simplifying(pair, monkeypatch)
     seconds = []
     for _ in range(3):
         start = time.process_time()
-        assert same_orientation(*pair) is True
-        assert same_orientation(*reversed(pair)) is True
+        assert same_orientation(*pair) is True and same_orientation(*reversed(pair)) is True
         seconds.append(time.process_time() - start)
     assert min(seconds) < 0.3
 
@@ -136,8 +135,7 @@ DIFFERENT = [
 
 @pytest.mark.parametrize("pair", DIFFERENT, ids=range(len(DIFFERENT)))
 def test_different(pair):
-    assert same_orientation(*pair) is False
-    assert same_orientation(*reversed(pair)) is False
+    assert same_orientation(*pair) is False and same_orientation(*reversed(pair)) is False
 
 
 @pytest.mark.parametrize("count", (1, 2, 7, 12))
@@ -201,8 +199,7 @@ def test_plain_numbers_of_one_item_need_neither_numpy_nor_sympy(monkeypatch):
 
 def test_batches():
     dcms = random_dcms(6, 1).reshape(2, 3, 3, 3)
-    assert same_orientation(dcms, dcms.copy())
-    assert not same_orientation(dcms, dcms[::-1])
+    assert same_orientation(dcms, dcms.copy()) and not same_orientation(dcms, dcms[::-1])
     assert same_orientation(np.stack(5 * [dcms[0, 0]]), dcms[0, 0])
     assert not same_orientation(dcms, dcms[0, 0])
     assert same_orientation(np.stack(5 * [np.eye(3)]), sm.eye(3))
@@ -301,8 +298,7 @@ def numerical(matrix, angles):
 
 def demand_truth(diagnosis, answer, angles, sequence):
     """Check that every named cause makes the given answer."""
-    assert not diagnosis.same
-    assert len(set(diagnosis.causes)) == len(diagnosis.causes)
+    assert not diagnosis.same and len(set(diagnosis.causes)) == len(diagnosis.causes)
     for cause in diagnosis.causes:
         np.testing.assert_allclose(
             rebuilt(cause, angles, sequence), answer, atol=1e-8, err_msg=cause

@@ -93,8 +93,7 @@ def test_way_back_at_exact_lock_with_either_zero(sequence, zero):
         dcms = dcm_from_body_fixed(angles, sequence).round()
         dcms[dcms == 0] = zero
         recovered = demand_way_back(dcms, sequence, largest=1e-15)
-        assert (recovered[:, 0] == 0).all()
-        assert recovered[:, 1] == pytest.approx(lock, abs=1e-15)
+        assert (recovered[:, 0] == 0).all() and recovered[:, 1] == pytest.approx(lock, abs=1e-15)
         one_by_one = [body_fixed_from_dcm(dcm, sequence) for dcm in dcms]
         assert rotation_error(dcm_from_body_fixed(one_by_one, sequence), dcms) < 1e-15
         assert not np.signbit(recovered[recovered == 0]).any()

@@ -675,6 +675,10 @@ def test_components_in_separate_arrays_are_not_guessed_at():
         dcm_from_body_fixed(tuple(ANGLES.T), "zxy")
     with pytest.raises(ValueError, match="a sequence of 4 arrays"):
         dcm_from_quaternion(list(QUATERNIONS.T))
+    with pytest.raises(TypeError, match="Join numbers and arrays with numpy.stack"):
+        dcm_from_body_fixed((ANGLES[:, 0], 0.0, 0.0), "zyx")
+    with pytest.raises(TypeError, match="use dcm_from_scipy_rotation"):
+        check_dcm(orientation.scipy_rotation_from_dcm(np.eye(3)))
     assert dcm_from_body_fixed(list(ANGLES), "zxy").shape == (COUNT, 3, 3)
 
 

@@ -44,6 +44,10 @@ def test_single_precision_is_held_to_its_own_digits():
     o.check_dcm(o.nearest_dcm(DCM.astype(np.float32)).dcm)
     assert not o.same_orientation((DCM * 1.00001).astype(np.float32), DCM)
     assert o.diagnose(DCM.astype(np.float32), DCM).same
+    turned = o.dcm_from_body_fixed(np.linspace((0.1, 0.2, 0.3), (0.7, 0.8, 0.9), 5), "zxy")
+    for metric in ("entries", "angle"):
+        mean = o.mean_orientation(turned.astype(np.float32), metric=metric)
+        assert o.angle_between(mean, o.mean_orientation(turned, metric=metric)) < 1e-7
 
 
 def test_tables_are_read_as_arrays_are():
