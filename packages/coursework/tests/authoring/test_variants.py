@@ -147,8 +147,7 @@ def test_a_classmates_answer_is_told_before_it_costs_anything(recorded, course):
         given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public.given
         reply = coursework.check(NAME, given["force"] * given["arm"])
         assert (reply.outcome, reply.note) == ("wrong", "other numbers")
-        assert reply.messages == [questions.FOR_OTHERS]
-        assert reply.tries == 0
+        assert reply.messages == [questions.FOR_OTHERS] and reply.tries == 0
     assert coursework.check(NAME, 1234567).note == ""
     right = coursework.check(NAME, lever.force * lever.arm)
     assert right.outcome == "correct" and not right.help and not right.sibling

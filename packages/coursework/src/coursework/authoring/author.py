@@ -310,8 +310,7 @@ class AuthoredQuestion:
             raise AuthorError(
                 f"{self.name}: a question of kind {self.public.kind!r} cannot have `turns`."
             )
-        built = self.to_plain(build(self.turns))
-        if self.fingerprint_of(built) != self.fingerprint_of(self.plain):
+        if self.fingerprint_of(self.to_plain(build(self.turns))) != self.fingerprint_of(self.plain):
             raise AuthorError(f"{self.name}: the product of the `turns` is not the right answer.")
 
     def _demand_notes(self) -> None:

@@ -198,10 +198,11 @@ def moodle(title: str, questions: Mapping[str, Iterable[Item]]) -> bytes:
     def page(markdown: str) -> Page:
         return Page.of(CLOZE.sub("&#123;", to_page(markdown, in_moodle)), "@@PLUGINFILE@@")
 
-    template = ENVIRONMENT.get_template("moodle.xml")
-    return template.render(
-        title=title, questions=questions, page=page, answers=answers, cloze=cloze
-    ).encode()
+    return (
+        ENVIRONMENT.get_template("moodle.xml")
+        .render(title=title, questions=questions, page=page, answers=answers, cloze=cloze)
+        .encode()
+    )
 
 
 def qti(title: str, questions: Mapping[str, Iterable[Item]]) -> bytes:

@@ -51,6 +51,10 @@ MOST_PLACES = 10
 #: Rounded values of pi, which are right to some digits only, so an answer would be, too.
 PI_ROUNDED = re.compile(r"(?<![\w.])3\.14(?:1(?:5(?:9\d{0,9})?|6)?)?(?![\w.])")
 #: A picture in Markdown, whose file is beside the notebook or attached to the cell.
+# An author who wants a picture of a certain width writes HTML.
+HTML_PICTURE = re.compile(
+    r"""(?P<before><img\b[^>]*?\bsrc=(?P<quote>["']))(?!https?:|data:)(?P<name>.+?)(?=(?P=quote))"""
+)
 PICTURE = re.compile(r"!\[(?P<alt>[^\]]*)\]\((?!https?:|data:)(?P<name>[^)\s]+)[^)]*\)")
 #: The most characters of a parameter that counts as a word; a longer one is part of the text.
 LONGEST_WORD = 40
@@ -242,7 +246,7 @@ def read_source(
         if cell.cell_type == "code":
             _demand_marks(cell.source, f"{path.name}, cell {number}")
         elif cell.cell_type == "markdown":
-            cell.source = _with_pictures(cell, path.parent)
+            cell.source = _with_pictures(cell, path.parent, f"{path.name}, cell {number}")
     recorder = _Recorder(path, notebook, variant, edition, only, pictures)
     figures = _figures_of_run(path, notebook, recorder)
     variables = checked_names(notebook)
@@ -258,22 +262,28 @@ def read_source(
     )
 
 
-def _with_pictures(cell: NotebookNode, folder: Path) -> str:
+def _with_pictures(cell: NotebookNode, folder: Path, where: str) -> str:
     """Return a cell's text with all pictures in it: those beside the notebook, and pasted ones.
 
     Students get no other files, and pages do not show what is pasted.
     """
     pasted = cell.pop("attachments", {})
 
-    def in_text(match: re.Match[str]) -> str:
+    def address(match: re.Match[str]) -> str:
         name = match["name"]
-        kind = mimetypes.guess_type(name)[0]
-        data = pasted.get(name.removeprefix("attachment:"), {}).get(kind) or base64.b64encode(
-            (folder / urllib.parse.unquote(name)).read_bytes()
-        ).decode("ascii")
-        return f'<img alt="{html.escape(match["alt"])}" src="data:{kind};base64,{data}">'
+        kind, path = mimetypes.guess_type(name)[0], folder / urllib.parse.unquote(name)
+        data = pasted.get(name.removeprefix("attachment:"), {}).get(kind)
+        if not data and not path.is_file():
+            raise author.AuthorError(
+                f"{where}: there is no picture {path}. In Markdown, write %20 for a space in its "
+                "name."
+            )
+        return f"data:{kind};base64,{data or base64.b64encode(path.read_bytes()).decode('ascii')}"
 
-    return PICTURE.sub(in_text, cell.source)
+    return PICTURE.sub(
+        lambda match: f'<img alt="{html.escape(match["alt"])}" src="{address(match)}">',
+        HTML_PICTURE.sub(lambda match: f"{match['before']}{address(match)}", cell.source),
+    )
 
 
 class _Recorder:
