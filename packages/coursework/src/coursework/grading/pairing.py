@@ -157,10 +157,9 @@ def _work_of(
     student: str, assignment: str, mine: Sequence[Notebook], course: Course, term: Term
 ) -> Work:
     """Return the notebooks that count, and the others, each with the reason."""
-    several = len(mine) > 1
     ranks = {
         notebook.file: (
-            not several or course.answers_something(notebook),
+            len(mine) == 1 or course.answers_something(notebook),
             term.attempts == LAST or not term.is_late(student, assignment, notebook),
         )
         for notebook in mine
@@ -224,8 +223,14 @@ def _say_whose(handed_in: HandedIn, folder: Path, show: TextIO) -> None:
     for submission in handed_in.work:
         reasons = (*[""] * len(submission.notebooks), *submission.why)
         for notebook, why in zip((*submission.notebooks, *submission.superseded), reasons):
-            known = notebook.matched, notebook.says, why
-            rows[submission.student, submission.assignment, notebook.file, *known] = None
+            rows[
+                submission.student,
+                submission.assignment,
+                notebook.file,
+                notebook.matched,
+                notebook.says,
+                why,
+            ] = None
     header = ("student", "assignment", "file", "known by", "says it is of", "does not count")
     write(folder / WHOSE, lines(header, rows))
     around = {
@@ -434,7 +439,8 @@ def put_renamed_aside(
 
     Their folder was renamed, so people's decisions on the answers are copied to the new name. A
     student whose notebook is still in its place but refused has no new name: the roster lacks the
-    old one.
+    old one. Where others are missing too, the folder may hold only late work, and an equal notebook
+    elsewhere may be a copy, so both marks stay.
     """
     work, refused = handed_in.work, {file.file for file in handed_in.refused}
     present = {(submission.student, submission.assignment) for submission in work}
@@ -461,8 +467,12 @@ def put_renamed_aside(
         if (submission.student, submission.assignment) not in known:
             digests = frozenset(notebook.digest for notebook in submission.notebooks)
             owners.setdefault((submission.assignment, digests), []).append(submission)
-    for student, assignment, files in absent:
-        fitting = owners.get((assignment, frozenset(digest for _, digest in files)), [])
+    equal = [
+        owners.get((assignment, frozenset(digest for _, digest in files)), [])
+        for _, assignment, files in absent
+    ]
+    incomplete = {record[1] for record, fitting in zip(absent, equal) if not fitting}
+    for (student, assignment, files), fitting in zip(absent, equal):
         # Prefer, among equal notebooks, those still in their place: then a roster has renamed the
         # student.
         there = [
@@ -475,7 +485,13 @@ def put_renamed_aside(
             for submission in there or fitting
             if submission.student not in term.groups
         ]
-        if names:
+        if names and not there and assignment in incomplete:
+            yield (
+                f"{' and '.join(map(repr, names))} handed in the very notebook of {student!r}, who "
+                "is not in this folder. Both keep their marks. If a student only has a new name, "
+                f"move {store.place(student, assignment).parent} to {store.folder}/put-aside."
+            )
+        elif names:
             said = f"{student!r} is now {' or '.join(map(repr, names))}: "
             if dry_run:
                 yield f"{said}we would move the record of {assignment}."
