@@ -120,8 +120,9 @@ def test_what_is_right_is_remembered_and_stays_right(desk):
     desk.judged["right"] = ("correct", "", {"opened": Locker(solution="By hand")})
     reply = check(ARM, "right")
     assert (reply.messages, reply.solution) == (["Said."], "<p>By hand</p>")
-    assert (reply.tries, reply.help, reply.sibling) == (1, "", "")
-    assert entry_of() == Entry("correct")
+    assert (reply.tries, reply.help, reply.sibling) == (1, "", "") and entry_of() == Entry(
+        "correct"
+    )
     again = check(ARM, "half")
     assert (again.tries, again.solution) == (2, "")
     assert entry_of() == Entry(

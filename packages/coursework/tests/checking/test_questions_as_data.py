@@ -49,8 +49,10 @@ QUESTION = Question(
 def test_every_field_is_read_and_written():
     sealed = Sealed(QUESTION, "packed", 2.5, "moment", ("p", "q"), ("l",), ("salt", "names"))
     assert Sealed.from_json(WHOLE, "here") == sealed and sealed.as_json() == WHOLE
-    assert Question.from_json(WHOLE) == QUESTION
-    assert QUESTION.as_json() == OF_QUESTION | OF_VARIANT | OWN
+    assert (
+        Question.from_json(WHOLE) == QUESTION
+        and QUESTION.as_json() == OF_QUESTION | OF_VARIANT | OWN
+    )
     about = {field.name.replace("_", " ") for kind in (Question, Sealed) for field in fields(kind)}
     inner = {"question", "variant", "arguments"}
     # A new field must be added here, too.

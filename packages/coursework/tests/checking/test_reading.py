@@ -318,8 +318,7 @@ def test_arguments_are_made_anew_for_each_call():
         [[first, text, number]] = reading.calls_for(asked)
         assert type(first) is kind or type(first).__name__ == kind
         assert list(first) == [1, 2] and [text, number] == ["zxy", 3]
-        assert type(text) is str and type(number) is int
-        assert first is not asked.calls[0][0]
+        assert type(text) is str and type(number) is int and first is not asked.calls[0][0]
     assert reading.calls_for(EXPRESSION) is None
 
 

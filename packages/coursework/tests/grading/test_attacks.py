@@ -218,9 +218,7 @@ def test_the_neighbours_are_unharmed(aftermath):
 
 def test_nothing_is_written_sent_or_left_running(aftermath):
     assert aftermath["state"] == (["canary"], (0o100666, 1_000_000_000, 6))
-    assert aftermath["heard"] == 0
-    assert aftermath["left"] == []
-    assert aftermath["temporary"] == []
+    assert aftermath["heard"] == 0 and aftermath["left"] == aftermath["temporary"] == []
 
 
 UNPROTECTED = sorted({attack.without for attack in ATTACKS if attack.without})

@@ -50,7 +50,7 @@ from coursework.grading.record import Answer
 from coursework.grading.reporting import pages
 from coursework.grading.reporting.reports import write_all
 from coursework.grading.running import Running
-from coursework.grading.store import Store, file_name
+from coursework.grading.store import Store, file_name, write
 from coursework.grading.submissions import languages
 from coursework.grading.submissions.roster import Roster
 from coursework.grading.tables import as_cell, as_written, table
@@ -427,7 +427,7 @@ def test_identical_wrong_answers_are_put_together(tmp_path, course):
                     answers={**graded.answers, "turns/sum": Answer("recorded", plain)},
                 ),
             )
-        write_all(store)
+        list(write_all(store))
         return (tmp_path / "report.html").read_text()
 
     assert "42*alpha" in report("same", "same", "other")
@@ -447,13 +447,31 @@ def test_reports_hold_one_record_at_a_time(tmp_path, course, monkeypatch):
             del graded
 
     monkeypatch.setattr(Store, "all", all_of_them)
-    write_all(Store(tmp_path))
+    list(write_all(Store(tmp_path)))
     assert most <= 3
-    assert "300 students" in (tmp_path / "report.html").read_text()
-    assert (tmp_path / "grades.csv").read_text().count("\n") == 301
+    assert (
+        "300 students" in (tmp_path / "report.html").read_text()
+        and (tmp_path / "grades.csv").read_text().count("\n") == 301
+    )
 
 
 # ---- never lost, never twice
+
+
+def test_a_table_that_somebody_changed_is_kept_and_said(course, copied):
+    shown = io.StringIO()
+    (copied / "undecided.csv").write_text("decisions of an evening")
+    regrade(copied, solutions=course / "solutions", show=shown)
+    (kept,) = copied.glob("undecided-changed-*.csv")
+    assert kept.read_text() == "decisions of an evening" and "merge`" in shown.getvalue()
+
+
+def test_a_full_disk_is_named(tmp_path):
+    with pytest.raises(OSError, match=r"No space left.*marks\.csv"):
+        write(
+            tmp_path / "marks.csv",
+            (str((tmp_path / "/dev/full").write_text(part)) for part in "ab"),
+        )
 
 
 def graded_lines(folder):
@@ -866,8 +884,7 @@ def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(
         path, marks, overwrite={"mistaken", "broken"} & set(re.findall(r"\w+", before))
     )
     after = (tmp_path / "book-filled.csv").read_bytes().decode()
-    assert written in after
-    assert path.read_bytes() == before.encode()
+    assert written in after and path.read_bytes() == before.encode()
     book, filled = map(gradebooks.Gradebook, (path, tmp_path / "book-filled.csv"))
     place = gradebooks._column(book, gradebooks._system(book), None)
     for (old, old_end), (new, new_end) in zip(book.lines, filled.lines, strict=True):

@@ -153,7 +153,7 @@ class Desk:
 
         if course:
             write(self.store.folder / reports.LINKS, as_text(links_of(course.folder)))
-        reports.write_all(self.store)
+        self.tell(*reports.write_all(self.store))
         self.tell(*said_of_people(self.store, self.standing, self.contracts))
 
 

@@ -109,15 +109,16 @@ def from_table(file: Any, kind: Any, where: str, value: object, most: float = ma
             said[field.name] = from_table(file, types[field.name], place, part, most)
         return kind(**said)  # type: ignore[operator]
     if origin is Mapping:
-        table = file.of(dict, "a table", where, value)
         return {
             name: from_table(file, arguments[1], f"{where}.{name}", part)
-            for name, part in table.items()
+            for name, part in file.of(dict, "a table", where, value).items()
         }
     if origin is tuple:
         what = "a list of tables" if is_dataclass(arguments[0]) else "a list"
-        listed = file.of(list, what, where, value)
-        return tuple(from_table(file, arguments[0], where, part) for part in listed)
+        return tuple(
+            from_table(file, arguments[0], where, part)
+            for part in file.of(list, what, where, value)
+        )
     if NoneType in arguments and len(arguments) == 2:
         return from_table(file, arguments[0], where, value, most)
     return file.leaf(kind, where, value, most)

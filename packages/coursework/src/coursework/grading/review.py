@@ -575,8 +575,7 @@ class _Answer(_Page):
             if self.get_argument("new_points", "").strip():
                 now = lines[new] = self.points_said(self.get_argument("new_points"), worth)
                 change = {new: (now, self.worth_in_force(cluster, new))}
-                source = cluster.mark.rubric
-                made += graded.journal.worths(cluster.question, change, source, who)
+                made += graded.journal.worths(cluster.question, change, cluster.mark.rubric, who)
         points = [lines.get(line) for line in rubric] if said == "rubric" else None
         if points is None:
             all_points = self.points_said(said, worth, least=0)

@@ -208,8 +208,11 @@ def _decimals(contract: Contract) -> str:
     question = contract.question
     if contract.plain is None or question.symbols or question.kind == "measurement":
         return ""
-    numbers = read(question, contract.plain).numbers
-    return ", ".join(number(float(entry)) for entries in numbers[:1] for entry in entries)
+    return ", ".join(
+        number(float(entry))
+        for entries in read(question, contract.plain).numbers[:1]
+        for entry in entries
+    )
 
 
 def _printed(desk: Desk, name: str, records: Sequence[Record], paper: str) -> list[Path]:

@@ -18,6 +18,8 @@ from .locks import lock
 from .record import Record
 
 REFUSED = "refused.json"
+# The digests of the tables as they were written.
+TABLES = "work/tables.json"
 
 
 class InUse(ValueError):
@@ -137,6 +139,18 @@ class Store:
         path = self.folder / name
         return reader(json.loads(path.read_text("utf8")), str(path)) if path.exists() else None
 
+    def write_table(self, name: str, rows: Iterable[str]) -> str:
+        """Write a table; return where the old one is if a person has changed it since, else ""."""
+        path, kept, written = self.folder / name, "", self.said(TABLES, by_name(text)) or {}
+        digest = hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else ""
+        if digest != written.get(name, digest) and digest:
+            kept = str(path.with_stem(f"{path.stem}-changed-{digest[:8]}"))
+            os.replace(path, kept)
+        write(path, rows)
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        write(self.folder / TABLES, json.dumps({**written, name: digest}))
+        return kept
+
     def put_aside(self, student: str, assignment: str) -> Path:
         """Set a record aside, where it no longer counts; delete its page; return its new place."""
         place = self.place(student, assignment)
@@ -240,13 +254,18 @@ def write(
         ),
         "wb",
     ) as file:
-        for piece in (text,) if isinstance(text, (str, bytes)) else text:
-            file.write(
-                piece.encode("utf8", "backslashreplace") if isinstance(piece, str) else piece
-            )
-        if lasting:
+        try:
+            for piece in (text,) if isinstance(text, (str, bytes)) else text:
+                file.write(
+                    piece.encode("utf8", "backslashreplace") if isinstance(piece, str) else piece
+                )
             file.flush()
-            os.fsync(file.fileno())
+            if lasting:
+                os.fsync(file.fileno())
+        except OSError as error:
+            # The system does not say which disk is full.
+            error.filename = error.filename or str(path)
+            raise
     os.replace(half, path)
     # Windows cannot open a directory.
     if lasting and hasattr(os, "O_DIRECTORY"):

@@ -581,8 +581,7 @@ def _is_number(there: str) -> bool:
 
 def _with_damaged(store: Store, names: Sequence[str]) -> tuple[list[str], list[str]]:
     """Split students without a record into those whose files were all refused, and all others."""
-    refused = refused_of(store)
-    known = {_signs(file.student) for file in refused if file.student}
+    known = {_signs(file.student) for file in refused_of(store) if file.student}
     damaged = [name for name in names if _signs(name) in known or _signs(turned(name)) in known]
     return damaged, [name for name in names if name not in damaged]
 

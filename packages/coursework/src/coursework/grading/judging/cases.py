@@ -125,8 +125,13 @@ def changed_since(decided: Decision | None, record: Record, contracts: Contracts
         return ""
     if decided.answer != digest_of_answer(record, decided.question):
         return "answer"
-    now = record.marks[decided.question].version
-    return "" if judged_alike(contracts.of(decided.contract), contracts.of(now)) else "question"
+    return (
+        ""
+        if judged_alike(
+            contracts.of(decided.contract), contracts.of(record.marks[decided.question].version)
+        )
+        else "question"
+    )
 
 
 def case_of(

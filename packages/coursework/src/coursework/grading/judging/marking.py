@@ -207,14 +207,15 @@ def load_questions(
     places: dict[Path, Path] = {}
     for path in map(Path, paths):
         ours = hashlib.sha256(json.dumps(software()).encode() + secret).digest()
-        sources = b"".join(files_of(path).values())
-        depends = hashlib.sha256(ours + edition.encode() + sources).hexdigest()[:16]
+        depends = hashlib.sha256(
+            ours + edition.encode() + b"".join(files_of(path).values())
+        ).hexdigest()[:16]
         places[path] = Path(results) / "questions" / f"{path.stem}-{depends}.json"
 
     def work_out(path: Path) -> None:
-        questions = questions_of(path, secret, edition)
         as_json = {
-            name: [contract.as_json() for contract in those] for name, those in questions.items()
+            name: [contract.as_json() for contract in those]
+            for name, those in questions_of(path, secret, edition).items()
         }
         write(places[path], json.dumps(as_json, ensure_ascii=False), private=True)
 
@@ -251,8 +252,9 @@ def earlier_variants(
     """Return earlier sets of variants that differ from today's, newest first; store today's."""
     path, lists = results / VARIANTS, dict[str, tuple[tuple[Contract, ...], ...]]()
     if path.exists():
-        read_lists = by_name(many(many(Contract.from_json)))
-        lists |= read_lists(json.loads(path.read_text("utf8")), str(path))
+        lists |= by_name(many(many(Contract.from_json)))(
+            json.loads(path.read_text("utf8")), str(path)
+        )
     earlier: dict[str, list[Sequence[Contract]]] = {}
     before = dict(lists)
     for name, variants in questions.items():
@@ -489,9 +491,12 @@ def _by_a_sibling(contract: Contract, mark_of_sibling: Mark, sibling: str) -> Ma
         f"You solved `{sibling}` without help, but not the question itself, so your instructor "
         "will decide."
     )
-    messages = (*mark_of_sibling.messages, said)
     return replace(
-        mark_of_sibling, outcome="undecided", note="by a sibling alone", points=0, messages=messages
+        mark_of_sibling,
+        outcome="undecided",
+        note="by a sibling alone",
+        points=0,
+        messages=(*mark_of_sibling.messages, said),
     )
 
 

@@ -105,10 +105,9 @@ class Assignment:
                 f"here, plus {100 * self.homework_cap:g} % of the points."
             )
         if self.homework_factor is not None:
-            share = f"{100 * self.homework_factor:g} %"
             return (
-                f"Once this is marked, homework on these questions counts for {share} of its "
-                "points."
+                "Once this is marked, homework on these questions counts for "
+                f"{100 * self.homework_factor:g} % of its points."
             )
         return "Homework on these questions counts in full alongside it." if self.questions else ""
 
@@ -517,8 +516,9 @@ def read_term(path: str | Path) -> Term:
             "assignments", "it has no assignments. Add a table such as [assignments.hw1]."
         )
     if term.attempts not in (IN_TIME, LAST):
-        known = f"{IN_TIME!r} or {LAST!r}"
-        raise file.bad("attempts", f"attempts must be {known}, not {term.attempts!r}.")
+        raise file.bad(
+            "attempts", f"attempts must be {IN_TIME!r} or {LAST!r}, not {term.attempts!r}."
+        )
     _demand_order(file, term)
     _demand_one_rule(file, term)
     _demand_droppable(file, term)
@@ -570,9 +570,10 @@ def _demand_droppable(file: _File, term: Term) -> None:
     for rule in term.drop:
         of = rule.of or tuple(term.assignments)
         if strangers := [name for name in of if name not in term.assignments]:
-            there = ", ".join(term.assignments)
             raise file.bad(
-                "drop.of", f"drop.of: there is no assignment {strangers[0]!r}; choose from {there}."
+                "drop.of",
+                f"drop.of: there is no assignment {strangers[0]!r}; choose from "
+                f"{', '.join(term.assignments)}.",
             )
         if type(rule.lowest) is not int or not 0 <= rule.lowest < len(of):
             raise file.bad(

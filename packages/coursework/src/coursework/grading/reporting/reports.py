@@ -28,6 +28,11 @@ from ..submissions.intake import Refused, refused_of
 from ..tables import lines, table
 from .templates_of_pages import page
 
+#: How the changes in a table become marks.
+READS = {
+    "grades.csv": "No command reads marks from it: change them with `coursework review`.",
+    "undecided.csv": "Its decisions count once you give it to `coursework merge`.",
+}
 #: The addresses that feedback links to, as the course had them when it was graded.
 LINKS = "links.json"
 #: The words for outcomes that have a "yet" elsewhere, which would be wrong once work is graded.
@@ -143,8 +148,11 @@ class _Assignment:
         return {name: order for order, name in enumerate(self.titles, 1)}
 
 
-def write_all(store: Store) -> None:
-    """Write the tables and the pages of all records, holding only one record at a time."""
+def write_all(store: Store) -> Iterator[str]:
+    """Write the tables and the pages of all records, holding only one record at a time.
+
+    Report each table that a person has changed.
+    """
     classes: dict[str, _Assignment] = {}
     names: dict[str, None] = {}
     links, term = store.said(LINKS, by_name(text)) or {}, term_of(store.folder)
@@ -159,8 +167,12 @@ def write_all(store: Store) -> None:
         ).add(record)
         names.update(dict.fromkeys(record.marks))
     refused = refused_of(store)
-    write(store.folder / "grades.csv", grades(store.all(), list(names), term))
-    write(store.folder / "undecided.csv", lines(UNDECIDED, _undecided_of(store.all())))
+    for name, rows in (
+        ("grades.csv", grades(store.all(), list(names), term)),
+        ("undecided.csv", lines(UNDECIDED, _undecided_of(store.all()))),
+    ):
+        if kept := store.write_table(name, rows):
+            yield f"Somebody had changed {name}, so we kept that table as {kept}. {READS[name]}"
     write(store.folder / "refused.csv", table(("file", "student", "why"), map(astuple, refused)))
     write(
         store.folder / "report.html",

@@ -717,8 +717,9 @@ def _entries(archive: zipfile.ZipFile) -> list[zipfile.ZipInfo]:
     Windows programs write backslashes.
     """
     for entry in archive.infolist():
-        name = entry.filename.replace("\\", "/")
-        entry.filename = name.encode("utf8", "backslashreplace").decode("utf8")
+        entry.filename = (
+            entry.filename.replace("\\", "/").encode("utf8", "backslashreplace").decode("utf8")
+        )
     return sorted(archive.infolist(), key=lambda entry: entry.filename)
 
 
@@ -946,8 +947,7 @@ def _json(data: bytes) -> dict[str, object]:
         raise Unfit("It is encoded in UTF-16, but notebooks must be in UTF-8.")
     if sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
         # Remove strings first, since signs in them, such as in a long output, are not values.
-        without_texts = TEXT.sub(b"", data)
-        if sum(map(without_texts.count, (b",", b"[", b"{"))) > MOST_VALUES:
+        if sum(map(TEXT.sub(b"", data).count, (b",", b"[", b"{"))) > MOST_VALUES:
             raise Unfit(f"It has more than {MOST_VALUES} parts, too many for a notebook.")
     try:
         notebook = json.loads(data.decode("utf-8-sig"), object_pairs_hook=_no_key_twice)
@@ -959,10 +959,13 @@ def _json(data: bytes) -> dict[str, object]:
         raise Unfit("It is nested too deeply.") from None
     except ValueError as error:
         where = f" (line {error.lineno})" if isinstance(error, json.JSONDecodeError) else ""
-        is_page = data.lstrip().startswith(b"<")
         raise Unfit(
             f"Not a notebook: it is not well-formed JSON{where}."
-            + (" It is a web page, perhaps one that asks to log in." if is_page else "")
+            + (
+                " It is a web page, perhaps one that asks to log in."
+                if data.lstrip().startswith(b"<")
+                else ""
+            )
             + (" It contains the marks of a merge conflict." if b"\n<<<<<<< " in data else "")
         ) from None
     if not isinstance(notebook, dict) or not {"cells", "worksheets"} & set(notebook):

@@ -243,10 +243,9 @@ def cells_in(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
         for cells in reader:
             rows.append((reader.line_num, list(map(str.strip, cells))))
     except csv.Error as error:
-        line = rows[-1][0] + 1 if rows else 1
         raise BadRoster(
-            f"{path}, line {line}: we cannot read this line ({error}). Perhaps a quotation mark "
-            "opens a cell there and nothing closes it."
+            f"{path}, line {rows[-1][0] + 1 if rows else 1}: we cannot read this line ({error}). "
+            "Perhaps a quotation mark opens a cell there and nothing closes it."
         ) from None
     return [name.casefold() for name in (rows.pop(0)[1] if rows else [])], rows
 
