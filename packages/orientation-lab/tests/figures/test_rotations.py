@@ -292,7 +292,7 @@ def test_the_text_moves_the_gimbal_and_the_reader_may_take_it(open_essay):
     assert angles[1] - angles[0] == pytest.approx((0, 5, 0), abs=0.1)
     page.keyboard.press(".")
     rest(page)
-    assert "rolled 5 degrees to the right" in page.locator(".world .look").inner_text().replace(
+    assert "rolled 25 degrees to the left" in page.locator(".world .look").inner_text().replace(
         "On the star. Now level it: ", ""
     )
     page.wait_for_function("document.querySelector('.world [role=status]').textContent.length > 20")

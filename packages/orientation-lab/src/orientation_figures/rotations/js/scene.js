@@ -168,8 +168,8 @@ class Scene {
     }
   }
 
-  machine({ B, C, D }, alpha, cameraAlpha) {
-    this.casts = true;
+  machine({ B, C, D }, alpha, cameraAlpha, casts) {
+    this.casts = casts;
     const up = [0, 0, 1], at = (row, far) => scale(far, row);
     const part = { alpha };
     this.rod(at(up, -2.1), at(up, -1.36), 0.15, 'graphite', part);
@@ -232,13 +232,13 @@ export const CROOKED = poses([84, 32, -58])[0];
 export const FROM = poses([-80, 60, -30])[0], TO = poses([100, 65, 40])[0];   // of stop 14
 const SWING = deg(90), TILT = deg(70), FOUR = unit([0.5, 0.35, 0.8]);   // of stop 6, and the line of stop 12
 // At the star, and from there to the second triple of its angles, one motor after the other.
-const TOWARDS_STAR = poses([0, 0, 0], [22, 0, 0], [22, 36, 0], [22, 36, 0], [202, 36, 0], [202, 144, 0], [202, 144, 180]);
+const TOWARDS_STAR = poses([0, 0, -30], [22, 0, -30], [22, 36, -30], [22, 36, 0], [22, 36, 0], [202, 36, 0], [202, 144, 0], [202, 144, 180]);
 export const CABLE = { wall: 2.05, start: 0.5 };
 export const axisOf = (start) => axisAngleFromDcm(frames(start).D);
 
 // The position of the eye where it differs from the usual one.
 // Its azimuth and height, and how close it is, from 0 to 1.
-export const EYES = { 'one-motor': [52, 17, 0.5], 'nine-shadows': [52, 17, 0.5], 'looking-back': [52, 38, 0.3], lock: [52, 40, 0], 'one-turn': [52, 17, 0.5],
+export const EYES = { 'one-motor': [52, 17, 0.5], 'nine-shadows': [52, 17, 0.5], 'looking-back': [52, 38, 0], lock: [52, 40, 0], 'one-turn': [52, 17, 0.5],
   'two-mirrors': [25, 40, 0.6], 'four-numbers': [52, 17, 0.6], 'not-home': [8, 24, 0.6], 'between-poses': [64, 50, 0.7], 'it-moves': [52, 17, 0.8] };
 
 // The course of the angles and the rest at a moment of a stop; start: the pose in which the stop was entered. Each
@@ -250,14 +250,14 @@ export const COURSE = {
   'nine-shadows': (t) => ({ angles: GENERIC, lit: Math.max(0, Math.ceil(3 * t) - 1) }),
   'looking-back': (t) => ({ angles: through(poses([0, 12, 0], [55, 12, 0], [0, 12, 0], [0, 12, 0], [55, 12, 0]), t, [0.02, 0.18, 0.3, 0.42, 0.64]), ride: t > 0.34 ? 1 : 0, faded: t > 0.67 ? 1 : 0 }),
   'two-motors': (t) => ({ angles: [SWING * between(t, 0.02, 0.15), TILT * between(t, 0.18, 0.31), 0] }),
-  'three-are-enough': (t) => ({ angles: through(TOWARDS_STAR, t, [0.35, 0.41, 0.5, 0.68, 0.76, 0.84, 0.93]) }),
+  'three-are-enough': (t) => ({ angles: through(TOWARDS_STAR, t, [0.35, 0.42, 0.49, 0.56, 0.68, 0.76, 0.84, 0.93]) }),
   'same-numbers': (t) => ({ angles: poses([35, 50, 65])[0].map((angle, k) => angle * between(t, 0.36 + 0.09 * k, 0.44 + 0.09 * k)) }),
-  lock: (t) => ({ angles: through(poses([0, 20, 0], [0, 90, 0], [-50, 90, 50], [-50, 90, 50]), t, [0.02, 0.16, 0.31, 1]) }),
+  lock: (t) => ({ angles: through(poses([0, 20, 0], [0, 90, 0], [0, 90, 0], [-50, 90, 50]), t, [0.02, 0.2, 0.27, 0.45]) }),
   'one-turn': (t, start) => ({ part: between(t, 0.04, 0.3), start }),
   'two-mirrors': (t) => ({ angles: ZERO, together: 0.5 * between(t, 0.27, 0.36) + 0.5 * between(t, 0.53, 0.66), apart: between(t, 0.38, 0.48) }),
-  'four-numbers': (t) => ({ whole: 2 * PI * (0.4 * between(t, 0.03, 0.3) + 0.6 * between(t, 0.69, 0.94)) }),
+  'four-numbers': (t) => ({ whole: 2 * PI * (0.4 * between(t, 0.03, 0.3) + 0.6 * between(t, 0.36, 0.6)) }),
   'not-home': (t) => ({ angles: ZERO, turn: 2 * PI * (between(t, 0.02, 0.17) + between(t, 0.61, 0.68)),
-    passed: between(t, 0.42, 0.49) - between(t, 0.51, 0.58) + between(t, 0.7, 0.78) }),
+    passed: t < 0.6 ? between(t, 0.41, 0.49) + between(t, 0.51, 0.59) : between(t, 0.7, 0.78) }),
   'between-poses': (t) => ({ part: between(t, 0.36, 0.95) }),
   'it-moves': (t) => ({ time: LASTS * clamp(t) }),
   'your-turn': (t, start) => ({ angles: start }),
@@ -381,10 +381,10 @@ const SHOWS = {
     }
     scene.dashes(scale(-1.7, B[0]), scale(1.7, B[0]), 0.017, 'muted', 14);
     scene.label(scale(1.7, B[0]), '\\theta', 'ink');
-    // The star passes from overhead along the line that the camera cannot follow: towards b_x.
-    const gone = deg(38) * between(s.t, 0.38, 0.62);
-    if (s.t > 0.1) {
-      const at = (angle) => add(scale(1.85 * Math.cos(angle), [0, 0, 1]), scale(1.85 * Math.sin(angle), B[0]));
+    // The star passes from overhead along the line that the camera cannot follow: towards b_x, as the text leaves it.
+    const gone = deg(38) * between(s.t, 0.52, 0.7);
+    if (s.t > 0.5) {
+      const at = (angle) => add(scale(1.85 * Math.cos(angle), [0, 0, 1]), scale(1.85 * Math.sin(angle), direction(140, 0)));
       scene.star(at(gone), 0.1);
       scene.tube(Array.from({ length: 12 }, (_, k) => at(gone * k / 11)), 0.011, 'star');
     }
@@ -479,7 +479,12 @@ const SHOWS = {
     const [from, to] = [FROM, TO].map((angles) => frames(angles).D), { one, angles } = ways(s.part);
     const line = (kind) => WHOLE_WAYS.map((both) => scale(1.5, both[kind][1]));
     // The two ways are what the reader is asked for first, so they are not drawn before that.
-    if (s.free ? apart(D, to) < deg(15) : s.part) scene.tube(line('one'), 0.02, 'accent'), scene.tube(line('angles'), 0.016, 'B');
+    if (s.free ? apart(D, to) < deg(15) : s.part) {
+      scene.tube(line('one'), 0.02, 'accent');
+      scene.tube(line('angles'), 0.016, 'B');
+      const [axis] = axisAngleFromDcm(multiply(transpose(from), to));
+      scene.dashes(scale(-1.7, axis), scale(1.7, axis), 0.014, 'accent', 12);
+    }
     for (const [rows, letter] of [[from, '0'], [to, '1']]) {
       flag(scene, rows, 'ink', 0.06);
       scene.label(scale(1.62, rows[1]), letter, 'ink');
@@ -568,17 +573,16 @@ export function sceneOf(state) {
   const all = { ...frames(angles), D };
   s.view = viewOf(s);
   s.right = s.view[0];
-  const [, , close] = s.eye;
-  s.target = scale(1 - close, TARGET);
-  s.half = mix(HALF, CLOSE, close);
+  s.target = scale(1 - s.eye[2], TARGET);
+  s.half = mix(HALF, CLOSE, s.eye[2]);
   s.D = D;
   const shown = { ground: stop.ground ?? 1, machine: stop.machine, camera: stop.camera, A: stop.A, D: stop.D, ...state.shown };
   scene.ground(shown.ground);
-  scene.machine(all, mix(shown.machine, 0.09, s.faded), mix(shown.camera, 0.15, s.faded));
+  scene.machine(all, mix(shown.machine, 0.09, s.faded), mix(shown.camera, 0.15, s.faded), shown.ground > 0.5);
   if (shown.A > 0.02) scene.triad('A', IDENTITY, { alpha: shown.A });
   if (shown.D > 0.02) scene.triad('D', D, { alpha: shown.D, reach: stop.id === 'looking-back' ? LOOKING : REACH });
   SHOWS[s.stop]?.(scene, s, all);
-  return { items: scene.items, labels: scene.labels, view: s.view, target: s.target, half: s.half, frames: all };
+  return { items: scene.items, labels: scene.labels, view: s.view, target: s.target, half: s.half, frames: all, angles };
 }
 
 // ---- words -------------------------------------------------------------------------------------------------

@@ -1,9 +1,10 @@
 // The figure of the essay in the page: it stays while the text scrolls past and moves it, and the reader may take hold
 // of it at any moment. What is shown follows the goal smoothly, a little later.
 import { carriedBy, fragmentOf } from '../../moving/js/address.js';
-import { add, dot, length, quaternionFromDcm, scale, several, times, transpose, unit, wrapped } from '../../moving/js/mathematics.js';
+import { AXES, add, dot, length, quaternionFromDcm, scale, several, times, transpose, unit, wrapped } from '../../moving/js/mathematics.js';
 import { calm, element, put, words, write } from '../../moving/js/shared.js';
 import { LABELS } from '../../moving/js/glyphs.js';
+import { fullTurns } from '../../moving/js/belt_picture.js';
 import { Sensors } from '../../moving/js/phone.js';
 import { AT_READER, COURSE, CROOKED, EYES, FROM, LASTS, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
   project, sceneOf, turnOf, turned, turnedAlong, turnedFrame, WHOLE_WAYS } from './scene.js';
@@ -21,7 +22,7 @@ const DIALS = {
   away: ['carry the camera across', 0, 100, 1, 100, '%'], part: ['share of the way', 0, 100, 1, 100, '%'],
   together: ['both mirrors together', 0, 52, 1, 52, '°'], apart: ['mirrors apart', 35, 65, 1, 30, '°', null, 35],
   whole: ['rotation of the camera', 0, 720, 1, DEGREES, '°'], turn: ['rotation of the camera', 0, 720, 1, DEGREES, '°'],
-  passed: ['pass the cable round', 0, 100, 1, 100, '%'], time: ['time', 0, LASTS, 0.1, 1, ' s'],
+  passed: ['pass the cable round', 0, 200, 1, 100, '%'], time: ['time', 0, LASTS, 0.1, 1, ' s'],
 };
 const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time', 'own', 'faded'];
 const FADES = ['machine', 'camera', 'A', 'D', 'ground'];
@@ -133,7 +134,7 @@ class World {
     this.enter(now.id);
     // Without motion, a paragraph's scene shows its outcome, but only when the reader has read on.
     this.goal.t = (calm() ? (read > 0.25 ? Math.ceil(read) : 0) : read) / of;
-    if ((this.state.free || this.state.thrown) && Math.abs(this.goal.t - this.heldAt) > 0.22 && !this.held) this.takeBack();
+    if ((this.state.free || this.state.thrown || this.set.size) && Math.abs(this.goal.t - this.heldAt) > 0.22 && !this.held) this.takeBack();
     this.wake();
   }
 
@@ -166,6 +167,8 @@ class World {
     const { state, goal } = this, course = COURSE[state.stop](state.t, state.start);
     if (course.angles && !state.free) goal.angles = course.angles;
     for (const name of SCALARS) if (!this.set.has(name)) goal[name] = course[name] ?? 0;
+    // The cable is passed round a camera that stands still.
+    if (!this.set.has('passed') && Math.abs(state.turn - goal.turn) > 1e-6) goal.passed = 0;
     state.lit = this.set.has('lit') ? state.lit : course.lit ?? 0;
     goal.own = state.free ? 1 : 0;
   }
@@ -197,7 +200,7 @@ class World {
 
   tick(now) {
     this.frame = 0;
-    const begun = performance.now(), { state, goal } = this;
+    const { state, goal } = this;
     const passed = Math.min(0.1, this.before ? (now - this.before) / 1000 : 0.016);
     const rate = (seconds) => (calm() ? 1 : 1 - Math.exp(-passed / seconds));
     let still = true;
@@ -225,10 +228,11 @@ class World {
       if (part >= 1) this.carry = null;
       still = false;
     } else state.carry = null;
+    const { D } = frames(state.angles);
+    if (state.stop === 'between-poses' && state.free && apart(D, state.track.at(-1)) > deg(0.5)) state.track = [...state.track, D].slice(-400);
     this.picture = sceneOf(state);
     this.pace(now, still);   // before the drawing, because it may empty the canvas
     this.draw();
-    this.script = performance.now() - begun;
     this.before = still ? 0 : now;
     if (!still) this.wake();
   }
@@ -236,8 +240,7 @@ class World {
   draw() {
     this.painter.paint(this.picture);
     this.drawNames();
-    const look = this.words();
-    write(this.seen, look);
+    write(this.seen, this.words());
     if (!this.numbers.hidden) this.drawNumbers();
     this.showValues();
     if (!this.passed && this.state.t > 0.9) {
@@ -289,8 +292,10 @@ class World {
     if (!this.cells) {
       this.cells = Array.from({ length: 13 }, () => element('span', {}));
       const row = (head, from, to) => element('div', {}, element('b', {}, head), ...this.cells.slice(from, to));
-      this.numbers.append(...['x', 'y', 'z'].map((axis, k) => row(`$\\hat{d}_${axis}$`, 3 * k, 3 * k + 3)), row('$q$', 9, 13));
+      const heads = AXES.map((axis) => element('span', {}, `$\\hat{a}_${axis}$`));
+      this.numbers.append(element('div', {}, element('b', {}), ...heads), ...AXES.map((axis, k) => row(`$\\hat{d}_${axis}$`, 3 * k, 3 * k + 3)), row('$q$', 9, 13));
     }
+    this.cells[9].parentElement.hidden = STOPS.indexOf(stopOf(this.state.stop)) < 11;   // before the stop that explains them
     D.flat().concat(q).forEach((value, k) => {
       write(this.cells[k], number(value));
       this.cells[k].classList.toggle('lit', this.state.stop === 'nine-shadows' && Math.floor(k / 3) === this.state.lit && k < 9);
@@ -313,7 +318,7 @@ class World {
 
   words() {
     const { state } = this, { A, D } = this.picture.frames, look = `The camera looks ${lookOf(D)}.`;
-    const home = apart(A, D), [, turn] = turnOf(state);
+    const home = apart(A, D), [, turn] = turnOf(state), gap = Math.round(35 + 30 * state.apart);
     const more = {
       'one-motor': () => `First motor at ${say(state.angles[0])}: the two shadows are ${Math.cos(state.angles[0]).toFixed(2)} and ${Math.sin(state.angles[0]).toFixed(2)} long.`,
       'nine-shadows': () => `The shadows of the camera's ${'xyz'[state.lit]} arrow are ${D[state.lit].map((entry) => entry.toFixed(2)).join(', ')}.`,
@@ -326,7 +331,7 @@ class World {
           : `${look} The axes of the first and the third motor are ${say(margin < PI / 2 ? margin : PI - margin)} apart.`;
       },
       'one-turn': () => (home < deg(0.5) ? `${look} It is home.` : `${look} From here, one rotation of ${say(home)} leads home.`),
-      'two-mirrors': () => `The mirrors are ${say(deg(35 + 30 * state.apart))} apart, and the arrow has turned ${say(deg(70 + 60 * state.apart))}.`,
+      'two-mirrors': () => `The mirrors are ${gap} degrees apart, and the arrow has turned ${2 * gap} degrees.`,
       'four-numbers': () => `Turned ${say(turn)}: the point is at ${say(turn / 2)}.`,
       'not-home': () => this.cable(),
       'between-poses': () => this.way(D),
@@ -339,17 +344,17 @@ class World {
   beside(D) {
     const aside = Math.acos(Math.max(-1, Math.min(1, dot(D[1], STAR)))), look = `The camera looks ${lookOf(D)}.`;
     if (aside > deg(4)) return `${look} The star is ${say(aside)} away from where it looks.`;
-    return lookOf(D).endsWith('level') ? `It is on the star, and level. Three motors were enough.` : `On the star. Now level it: ${lookOf(D).split(', ')[2]}.`;
+    return lookOf(D).endsWith('level') ? 'It is on the star, and level. Three motors were enough.' : `On the star. Now level it: ${lookOf(D).split(', ')[2]}.`;
   }
 
   cable() {
-    const { turn, passed } = this.state, turns = turn / (2 * PI);
-    const whole = [0, 1, 2].find((count) => Math.abs(turns - count) < 0.01);
-    if (whole === undefined) return `The camera has turned ${say(turn)}, and the cable has followed.`;
-    if (whole === 0) return 'The camera is as it was, and the cable is flat.';
-    if (passed < 0.02) return `After ${whole === 1 ? 'one turn' : 'two turns'} the camera is as it was. The cable is not: it is twisted by ${whole === 1 ? 'one turn' : 'two turns'}.`;
-    if (passed < 0.98) return 'The camera stands still while the cable is passed round it.';
-    return whole === 1 ? 'Passed round: the twist is still there, the other way. It will not go away.' : 'Passed round: the cable is flat. Two turns are none.';
+    const { turn, passed } = this.state, once = fullTurns(turn) === 1, times = Math.round(passed);
+    if (turn < 1e-8) return 'The camera is as it was, and the cable is flat.';
+    if (!fullTurns(turn)) return `The camera has turned ${say(turn)}, and the cable has followed.${passed > 0.02 ? ' You can pass it round after a whole turn.' : ''}`;
+    if (Math.abs(passed - times) > 0.01) return 'The camera stands still while the cable is passed round it.';
+    if (!times) return `After ${once ? 'one turn' : 'two turns'} the camera is as it was. The cable is not: it is twisted by ${once ? 'one turn' : 'two turns'}.`;
+    if (times === 2) return once ? 'Passed round twice: the first twist is back. It will not go away.' : 'Passed round twice: two turns again, the other way.';
+    return once ? 'Passed round: the twist is still there, the other way.' : 'Passed round: the cable is flat. Two turns are none.';
   }
 
   way(D) {
@@ -379,7 +384,7 @@ class World {
 
   // Return what is under the pointer: an arm with its point, or the camera.
   partAt(at) {
-    if (!this.picture) return null;
+    if (!this.picture || this.state.stop === 'two-mirrors') return null;
     const { B, C } = this.picture.frames, stop = stopOf(this.state.stop), found = [];
     const far = (point) => Math.hypot(...this.onScreen(point).map((entry, k) => entry - at[k]));
     if (Math.hypot(at[0], at[1] - this.onScreen([0, 0, 0])[1]) < 0.3 * this.half) found.push({ part: 'D', near: 0.1 });
@@ -452,7 +457,6 @@ class World {
     const before = frames(goal.angles).D, dcm = turnedFrame(axis, turn, before);
     goal.angles = anglesNear(dcm, goal.angles);
     this.swing = [...(this.swing ?? []).slice(-20), { at: when, by: scale(turn, unit(axis)) }];
-    if (state.stop === 'between-poses') state.track = [...state.track, dcm].slice(-400);
   }
 
   // Move an arm as far along its circle as the pointer moves.
@@ -471,6 +475,8 @@ class World {
     this.held = null;
     this.canvas.removeAttribute('data-held');
     if (!part) return;
+    const { goal } = this, round = Math.round(goal.turn / (2 * PI)) * 2 * PI;
+    if (Math.abs(goal.turn - round) < deg(12)) goal.turn = round;   // no hand stops exactly after a whole turn
     if (part === 'D' && this.state.stop === 'it-moves') {
       // Throw it at the speed of the last tenth of a second.
       const lately = (this.swing ?? []).filter(({ at }) => event.timeStamp - at < 100);
@@ -522,13 +528,11 @@ class World {
     const turn = { ArrowLeft: [0, step], ArrowRight: [0, -step], ArrowUp: [1, step], ArrowDown: [1, -step], ',': [2, -step], '.': [2, step] }[event.key];
     if (event.key === 'Home') this.giveBack();
     else if (turn && event.shiftKey && event.key.startsWith('Arrow')) {
-      const [dx, dy] = { ArrowLeft: [6, 0], ArrowRight: [-6, 0], ArrowUp: [0, 6], ArrowDown: [0, -6] }[event.key];
-      this.lookFrom(goal.eye[0] + dx, goal.eye[1] + dy);
+      this.lookFrom(...[0, 1].map((k) => goal.eye[k] + (k === turn[0] ? 6 * Math.sign(turn[1]) : 0)));
     } else if (turn && this.state.stop === 'not-home') this.dial('turn', Math.max(0, Math.min(4 * PI, goal.turn + 3 * turn[1])));
     else if (turn) {
       this.seize();
       goal.angles = goal.angles.map((angle, k) => (k === turn[0] ? angle + turn[1] : angle));
-      if (this.state.stop === 'between-poses') this.state.track = [...this.state.track, frames(goal.angles).D].slice(-400);
       this.letGo();
     } else return;
     event.preventDefault();
@@ -551,7 +555,7 @@ class World {
     this.dials.replaceChildren(...this.open.map(({ row }) => row));
     const light = (k) => { this.state.lit = k; this.set.add('lit'); this.heldAt = this.goal.t; };
     const buttons = { 'it-moves': [['Set it swinging', () => { this.seize(); this.throwIt(SWING); }]],
-      'nine-shadows': ['x', 'y', 'z'].map((axis, k) => [`Shadows of $\\hat{d}_${axis}$`, () => light(k)]) }[stop.id];
+      'nine-shadows': AXES.map((axis, k) => [`Shadows of $\\hat{d}_${axis}$`, () => light(k)]) }[stop.id];
     if (buttons) this.dials.append(element('div', { class: 'tools' }, ...buttons.map(([name, act]) => element('button', { type: 'button', click: () => {
       act();
       this.letGo();
@@ -560,7 +564,7 @@ class World {
 
   showValues() {
     for (const { name, field, value, factor, sign, motor, zero, title } of this.open) {
-      const now = motor >= 0 && motor !== null ? wrapped(this.state.angles[motor]) : this.state[name];
+      const now = motor >= 0 && motor !== null ? wrapped(this.picture.angles[motor]) : this.state[name];
       const shown = String(Number((now * factor + zero).toFixed(factor === 1 ? 1 : 0)) + 0);
       if (document.activeElement !== field || !this.set.has(name)) field.value = shown;
       write(value, `${shown}${sign}`.replace('-', '\u2212'));
@@ -649,11 +653,9 @@ class World {
   // ---- the reader's own phone --------------------------------------------------------------------------------
 
   async askPhone() {
-    const kind = window.DeviceOrientationEvent;
+    const kind = window.DeviceOrientationEvent, report = (text) => { this.phoneWords = text; this.wake(); };
     if (kind?.requestPermission && await kind.requestPermission().catch(() => 'denied') !== 'granted') {
-      this.phoneWords = 'Access to the sensors was refused. You can still turn the gimbal with your finger.';
-      this.wake();
-      return;
+      return report('Access to the sensors was refused. You can still turn the gimbal with your finger.');
     }
     const sensors = new Sensors(), name = 'ondeviceorientationabsolute' in window ? 'deviceorientationabsolute' : 'deviceorientation';
     let first = null;
@@ -665,17 +667,11 @@ class World {
       const q = this.quaternion(frames(sensors.angles).D), margin = Math.abs(Math.abs(sensors.angles[1]) - PI / 2);
       first ??= q;
       const along = dot(first, q);
-      this.phoneWords = `The camera looks where the top of your phone points: ${lookOf(frames(sensors.angles).D)}.`
-        + (margin < deg(8) ? ' You hold it upright: this is gimbal lock.' : along < -0.985 ? ' Once round: you are back, and q is now \u2212q.' : '');
-      this.wake();
+      report(`The camera looks where the top of your phone points: ${lookOf(frames(sensors.angles).D)}.`
+        + (margin < deg(8) ? ' You hold it upright: this is gimbal lock.' : along < -0.985 ? ' Once round: you are back, and q is now \u2212q.' : ''));
     });
-    this.phoneWords = 'Waiting for the sensors of this device ...';
-    this.wake();
-    setTimeout(() => {
-      if (first) return;
-      this.phoneWords = 'No sensor responds here. You can still turn the gimbal with your finger.';
-      this.wake();
-    }, 3000);
+    report('Waiting for the sensors of this device ...');
+    setTimeout(() => first || report('No sensor responds here. You can still turn the gimbal with your finger.'), 3000);
   }
 }
 
