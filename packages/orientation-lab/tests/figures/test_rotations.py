@@ -172,7 +172,7 @@ def test_still(name):
     assert len(painter.words(stop.still).split()) > 6
     # Labels lie on the sheet, and none on another.
     places = np.array([label[3] for label in stop.still["labels"]])
-    assert np.abs(places).max() < scenes()["size"] / 2
+    assert (np.abs(places) < scenes()["size"] / 2).all()
     for k, place in enumerate(places):
         assert (np.abs(places[:k] - place).max(axis=1) > 7).all()
 

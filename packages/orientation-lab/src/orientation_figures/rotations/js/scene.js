@@ -250,7 +250,7 @@ export const COURSE = {
   'nine-shadows': (t) => ({ angles: GENERIC, lit: Math.max(0, Math.ceil(3 * t) - 1) }),
   'looking-back': (t) => ({ angles: through(poses([0, 12, 0], [55, 12, 0], [0, 12, 0], [0, 12, 0], [55, 12, 0]), t, [0.02, 0.18, 0.3, 0.42, 0.64]), ride: t > 0.34 ? 1 : 0, faded: t > 0.67 ? 1 : 0 }),
   'two-motors': (t) => ({ angles: [SWING * between(t, 0.02, 0.15), TILT * between(t, 0.18, 0.31), 0] }),
-  'three-are-enough': (t) => ({ angles: through(TOWARDS_STAR, t, [0.35, 0.42, 0.49, 0.56, 0.68, 0.76, 0.84, 0.93]) }),
+  'three-are-enough': (t) => ({ angles: through(TOWARDS_STAR, t, [0.34, 0.38, 0.42, 0.46, 0.68, 0.76, 0.84, 0.93]) }),
   'same-numbers': (t) => ({ angles: poses([35, 50, 65])[0].map((angle, k) => angle * between(t, 0.36 + 0.09 * k, 0.44 + 0.09 * k)) }),
   lock: (t) => ({ angles: through(poses([0, 20, 0], [0, 90, 0], [0, 90, 0], [-50, 90, 50]), t, [0.02, 0.2, 0.27, 0.45]) }),
   'one-turn': (t, start) => ({ part: between(t, 0.04, 0.3), start }),

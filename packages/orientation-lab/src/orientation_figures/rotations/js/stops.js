@@ -22,7 +22,7 @@ export const STOPS = [
   { id: 'two-motors', machine: 1, camera: 1, A: 0, D: 1, still: 1, dials: ['psi', 'theta'],
     before: 'The first motor turns, then the second. Beside it a ghost makes the same two turns in the opposite order.',
     after: 'Both have made the same two turns, and they look in different directions.' },
-  { id: 'three-are-enough', machine: 1, camera: 1, A: 0, D: 0, still: 0.6, dials: MOTORS,
+  { id: 'three-are-enough', machine: 1, camera: 1, A: 0, D: 0, still: 0.5, dials: MOTORS,
     before: 'There is a star to the north, a little west. The camera looks north, rolled to the left. Three motors can point it at the star.',
     after: 'The gimbal has gone over the top to a second triple of angles, and the camera looks at the star again, level.' },
   { id: 'same-numbers', machine: 0, camera: 0, A: 0, D: 0, still: 1, dials: MOTORS, ground: 0,
