@@ -86,7 +86,7 @@ def test_a_link_to_a_stop_shows_that_stop_and_leaves_room_for_its_text(page, sit
         covered = 0 if beside else max(0, figure["y"] + figure["height"])
         assert height - covered > min(140, 0.7 * height)
     # A reload in mid-page stays there.
-    page.mouse.wheel(0, 60)
+    page.mouse.wheel(0, 110)
     page.wait_for_timeout(300)
     before = page.locator(".world").get_attribute("data-state")
     page.reload()
@@ -94,7 +94,7 @@ def test_a_link_to_a_stop_shows_that_stop_and_leaves_room_for_its_text(page, sit
     wait_for_stop(page, before)
 
 
-@pytest.mark.parametrize("page", [(1300, 900), (380, 760)], indirect=True)
+@pytest.mark.parametrize("page", [(1024, 700)], indirect=True)
 def test_the_answer_to_a_task_comes_only_when_the_reader_goes_on(page, site):
     open_essay(page, f"{site}{ESSAY}#three-are-enough")
     wait_for_stop(page, "three-are-enough")
@@ -104,7 +104,7 @@ def test_the_answer_to_a_task_comes_only_when_the_reader_goes_on(page, site):
     assert "The star is 41 degrees away" in look.inner_text()
     for _ in range(60):
         if "Three motors were enough" not in look.inner_text():
-            page.mouse.wheel(0, 60)
+            page.mouse.wheel(0, 110)
             page.wait_for_timeout(150)
             page.wait_for_function("!document.querySelector('.world').world.frame")  # it rests
     assert "Three motors were enough" in look.inner_text()
