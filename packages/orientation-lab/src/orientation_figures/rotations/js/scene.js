@@ -244,20 +244,20 @@ export const EYES = { 'one-motor': [52, 17, 0.5], 'nine-shadows': [52, 17, 0.5],
 // The course of the angles and the rest at a moment of a stop; start: the pose in which the stop was entered. Each
 // paragraph of the stop's text has an equal share of the time from 0 to 1, so that the figure shows what it says.
 export const COURSE = {
-  'which-way': (t) => ({ angles: through([AT_READER, AT_READER, poses([-110, 8, 0])[0]], t, [0, 0.34, 0.6]) }),
+  'which-way': (t) => ({ angles: through([AT_READER, AT_READER, poses([-110, 8, 0])[0]], t, [0, 0.34, 0.5]) }),
   'two-triads': (t) => ({ angles: GENERIC, away: between(t, 0.68, 0.95) }),
-  'one-motor': (t) => ({ angles: through(poses([0, 0, 0], [40, 0, 0], [40, 0, 0], [120, 0, 0], [120, 0, 0], [40, 0, 0]), t, [0.03, 0.28, 0.36, 0.62, 0.69, 0.92]) }),
+  'one-motor': (t) => ({ angles: through(poses([0, 0, 0], [40, 0, 0], [40, 0, 0], [120, 0, 0], [120, 0, 0], [40, 0, 0]), t, [0.01, 0.14, 0.34, 0.55, 0.68, 0.85]) }),
   'nine-shadows': (t) => ({ angles: GENERIC, lit: Math.max(0, Math.ceil(3 * t) - 1) }),
-  'looking-back': (t) => ({ angles: through(poses([0, 12, 0], [55, 12, 0], [0, 12, 0], [0, 12, 0], [55, 12, 0]), t, [0.02, 0.18, 0.3, 0.42, 0.64]), ride: t > 0.34 ? 1 : 0, faded: t > 0.67 ? 1 : 0 }),
-  'two-motors': (t) => ({ angles: [SWING * between(t, 0.02, 0.15), TILT * between(t, 0.18, 0.31), 0] }),
-  'three-are-enough': (t) => ({ angles: through(TOWARDS_STAR, t, [0.34, 0.38, 0.42, 0.46, 0.68, 0.76, 0.84, 0.93]) }),
-  'same-numbers': (t) => ({ angles: poses([35, 50, 65])[0].map((angle, k) => angle * between(t, 0.36 + 0.09 * k, 0.44 + 0.09 * k)) }),
-  lock: (t) => ({ angles: through(poses([0, 20, 0], [0, 90, 0], [0, 90, 0], [-50, 90, 50]), t, [0.02, 0.2, 0.27, 0.45]) }),
+  'looking-back': (t) => ({ angles: through(poses([0, 12, 0], [55, 12, 0], [0, 12, 0], [0, 12, 0], [55, 12, 0]), t, [0.01, 0.14, 0.28, 0.38, 0.58]), ride: t > 0.34 ? 1 : 0, faded: t > 0.67 ? 1 : 0 }),
+  'two-motors': (t) => ({ angles: [SWING * between(t, 0.01, 0.1), TILT * between(t, 0.12, 0.22), 0] }),
+  'three-are-enough': (t) => ({ angles: through(TOWARDS_STAR, t, [0.34, 0.38, 0.42, 0.46, 0.67, 0.72, 0.77, 0.82]) }),
+  'same-numbers': (t) => ({ angles: poses([35, 50, 65])[0].map((angle, k) => angle * between(t, 0.34 + 0.05 * k, 0.39 + 0.05 * k)) }),
+  lock: (t) => ({ angles: through(poses([0, 20, 0], [0, 90, 0], [0, 90, 0], [-50, 90, 50]), t, [0.01, 0.12, 0.26, 0.42]) }),
   'one-turn': (t, start) => ({ part: between(t, 0.04, 0.3), start }),
   'two-mirrors': (t) => ({ angles: ZERO, together: 0.5 * between(t, 0.27, 0.36) + 0.5 * between(t, 0.53, 0.66), apart: between(t, 0.38, 0.48) }),
-  'four-numbers': (t) => ({ whole: 2 * PI * (0.4 * between(t, 0.03, 0.3) + 0.6 * between(t, 0.36, 0.6)) }),
-  'not-home': (t) => ({ angles: ZERO, turn: 2 * PI * (between(t, 0.02, 0.17) + between(t, 0.61, 0.68)),
-    passed: t < 0.6 ? between(t, 0.41, 0.49) + between(t, 0.51, 0.59) : between(t, 0.7, 0.78) }),
+  'four-numbers': (t) => ({ whole: 2 * PI * (0.4 * between(t, 0.01, 0.14) + 0.6 * between(t, 0.36, 0.6)) }),
+  'not-home': (t) => ({ angles: ZERO, turn: 2 * PI * (between(t, 0.01, 0.12) + between(t, 0.6, 0.66)),
+    passed: t < 0.6 ? between(t, 0.41, 0.49) + between(t, 0.51, 0.59) : between(t, 0.68, 0.75) }),
   'between-poses': (t) => ({ part: between(t, 0.36, 0.95) }),
   'it-moves': (t) => ({ time: LASTS * clamp(t) }),
   'your-turn': (t, start) => ({ angles: start }),
@@ -364,7 +364,7 @@ const SHOWS = {
   'same-numbers'(scene, s) {
     const [right, up] = s.view;
     SEQUENCES.forEach((sequence, k) => {
-      const at = add(TARGET, scale(1.2 * (k % 4 - 1.5), right), scale(1.45 * (1 - Math.floor(k / 4)) + 0.12, up));
+      const at = add(TARGET, scale(1.1 * (k % 4 - 1.5) - 0.2, right), scale(1.45 * (1 - Math.floor(k / 4)) + 0.12, up));
       const rows = dcmFromBodyFixed(s.angles, sequence), own = sequence === SEQUENCE;
       scene.camera(rows, { at, size: 0.68, colour: own ? 'D' : 'metal' });
       scene.arrow(add(at, scale(0.36, rows[1])), add(at, scale(0.72, rows[1])), own ? 'D' : 'accent', { thick: 0.022, head: 0.7 });
