@@ -109,31 +109,30 @@ class World {
 
   // ---- the text moves it -----------------------------------------------------------------------------------
 
-  // How many pixels are left to scroll until a stop is being read, and until each of its marks: where a link to it leads,
-  // the beginning of each paragraph and the end. Reading begins when a paragraph has come up to the middle of the visible
-  // part of the text.
-  course({ place }) {
+  // Where a stop is, and where a link brings it. Reading begins at the line in the middle of the visible part of the text.
+  place({ place }) {
     const { top, bottom } = place.getBoundingClientRect();
-    const begins = Math.min(parseFloat(getComputedStyle(place).scrollMarginTop), top + scrollY);   // the first is higher up
-    const line = (begins + innerHeight) / 2, marks = [top - begins];
-    const tops = [...place.querySelectorAll(PARAGRAPHS)].map((paragraph) => paragraph.getBoundingClientRect().top);
+    const begins = Math.min(parseFloat(getComputedStyle(place).scrollMarginTop), top + scrollY), line = (begins + innerHeight) / 2;   // the first is higher up
+    return { top, bottom, begins, line, isRead: top <= line };
+  }
+
+  // How many pixels are left to scroll until each mark of a stop: its place, the beginning of each paragraph and the end.
+  course(section) {
+    const { top, bottom, begins, line } = this.place(section), marks = [top - begins];
+    const tops = [...section.place.querySelectorAll(PARAGRAPHS)].map((paragraph) => paragraph.getBoundingClientRect().top);
     for (const y of [...tops, bottom]) marks.push(Math.max(marks.at(-1) + 1, y - line));
-    return { left: top - line, marks, count: marks.length - 1 };
+    return { marks, count: marks.length - 1 };
   }
 
   // Find which stop is being read, and how much of it.
   follow() {
     if (!this.sections.length) return;
-    let now = this.sections[0], read = 0, of = 1;
-    for (const section of this.sections) {
-      const { left, marks, count } = this.course(section);
-      if (left > 0) continue;
-      const k = marks.findLastIndex((mark) => mark <= 0);
-      [now, of, read] = [section, count, k < 0 ? 0 : k < count ? k - marks[k] / (marks[k + 1] - marks[k]) : count];
-    }
+    const now = this.sections.findLast((section) => this.place(section).isRead) ?? this.sections[0];
+    const { marks, count } = this.course(now), k = marks.findLastIndex((mark) => mark <= 0);
+    const read = k < 0 ? 0 : k < count ? k - marks[k] / (marks[k + 1] - marks[k]) : count;
     this.enter(now.id);
     // Without motion, a paragraph's scene shows its outcome, but only when the reader has read on.
-    this.goal.t = (calm() ? (read > 0.25 ? Math.ceil(read) : 0) : read) / of;
+    this.goal.t = (calm() ? (read > 0.25 ? Math.ceil(read) : 0) : read) / count;
     if ((this.state.free || this.state.thrown || this.set.size) && Math.abs(this.goal.t - this.heldAt) > 0.22 && !this.held) this.takeBack();
     this.wake();
   }
@@ -228,9 +227,9 @@ class World {
       if (part >= 1) this.carry = null;
       still = false;
     } else state.carry = null;
-    const { D } = frames(state.angles);
-    if (state.stop === 'between-poses' && state.free && apart(D, state.track.at(-1)) > deg(0.5)) state.track = [...state.track, D].slice(-400);
     this.picture = sceneOf(state);
+    const { D } = this.picture.frames;
+    if (state.stop === 'between-poses' && state.free && apart(D, state.track.at(-1)) > deg(0.5)) state.track = [...state.track, D].slice(-400);
     this.pace(now, still);   // before the drawing, because it may empty the canvas
     this.draw();
     this.before = still ? 0 : now;
@@ -295,7 +294,8 @@ class World {
       const heads = AXES.map((axis) => element('span', {}, `$\\hat{a}_${axis}$`));
       this.numbers.append(element('div', {}, element('b', {}), ...heads), ...AXES.map((axis, k) => row(`$\\hat{d}_${axis}$`, 3 * k, 3 * k + 3)), row('$q$', 9, 13));
     }
-    this.cells[9].parentElement.hidden = STOPS.indexOf(stopOf(this.state.stop)) < 11;   // before the stop that explains them
+    // The quaternion is shown from the stop on that explains it.
+    this.cells[9].parentElement.hidden = STOPS.indexOf(stopOf(this.state.stop)) < STOPS.indexOf(stopOf('four-numbers'));
     D.flat().concat(q).forEach((value, k) => {
       write(this.cells[k], number(value));
       this.cells[k].classList.toggle('lit', this.state.stop === 'nine-shadows' && Math.floor(k / 3) === this.state.lit && k < 9);
