@@ -363,7 +363,7 @@ def test_download_is_small_enough():
     assert lock["bytes"] == sum(path.stat().st_size for path in files)
     files += (HTML / scripts.folder_name()).iterdir()
     # The questions, with their figures, come along: every question of the exercises has variants.
-    assert sum(len(gzip.compress(path.read_bytes(), 6)) for path in files) <= 18_340_000
+    assert sum(len(gzip.compress(path.read_bytes(), 6)) for path in files) <= 18_333_000
 
 
 @pytest.mark.parametrize("file", [runtime.LOCK, lite.LOCK])
