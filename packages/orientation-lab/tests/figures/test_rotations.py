@@ -29,8 +29,15 @@ from orientation_figures.moving import bundle
 from orientation_figures.rotations import Stop, painter, scenes
 from tools import rotations as written_down
 
+
+def unit_vector(vector):
+    return np.array(vector) / np.linalg.norm(vector)
+
+
 STILLS = {still["id"]: still for still in scenes()["stills"]}
 FROM, TO = np.radians((-80, 60, -30)), np.radians((100, 65, 40))
+# The line of stop 12, and that of the second pair of mirrors there.
+FOUR, SECOND = map(unit_vector, ((0.48, 0.39, 0.79), (-0.6, 0.3, 0.75)))
 
 
 def fragment_of(place, content):
@@ -80,7 +87,7 @@ def test_every_frame_of_every_stop_is_that_of_the_book(number):
         axis, angle = axis_angle_from_dcm(start)
         expected = dcm_from_axis_angle(axis, angle * (1 - state["part"]))
     elif stop == "four-numbers":
-        axis = np.array((0.5, 0.35, 0.8)) / np.linalg.norm((0.5, 0.35, 0.8))
+        axis = FOUR / np.linalg.norm(FOUR)
         half = state["whole"] / 2
         expected = dcm_from_quaternion(np.array((np.cos(half), *np.sin(half) * axis)))
     elif stop == "not-home":
@@ -138,6 +145,43 @@ def test_the_mirrors_turn_by_twice_their_angle():
     gap = np.arccos(abs(edges[0] @ edges[1]) / np.prod(np.linalg.norm(edges, axis=1)))
     assert turn == pytest.approx(2 * gap, abs=2e-3)
     assert np.linalg.norm(first) == pytest.approx(np.linalg.norm(last), abs=1e-3)
+
+
+def test_the_four_numbers_are_those_of_two_mirrors():
+    """The arrows of stop 12: their dot product is the cosine, and their cross product is drawn."""
+    rods = [item for item in STILLS["four-numbers"]["items"] if item[0] == "rod" and item[1] == [1]]
+    way = {
+        text: unit_vector(at)
+        for text, _, _, _, at in STILLS["four-numbers"]["labels"]
+        if text.startswith(r"\hat{u}")
+    }
+    first, second = way[r"\hat{u}_1"], way[r"\hat{u}_2"]
+    (cosine,) = (item for item in rods if item[5] == "ink" and item[4][0] == 0.045)
+    (sine,) = (item for item in rods if item[5] == "accent" and item[4][0] == 0.03)
+    unit = 1.35
+    assert cosine[4][2] / unit == pytest.approx(first @ second, abs=1e-3)
+    assert sine[4][2] / unit == pytest.approx(np.linalg.norm(np.cross(first, second)), abs=1e-3)
+    vector = np.cross(first, second)
+    shadows = [item for item in rods if item[5] == "accent" and item[4][0] == 0.055]
+    for axis, shadow in zip(np.eye(3), shadows, strict=True):
+        assert shadow[4][2] * np.array(shadow[2][2]) / unit == pytest.approx(
+            vector @ axis * axis, abs=1e-3
+        )
+    assert unit_vector(vector) == pytest.approx(FOUR, abs=1e-3)
+
+
+def test_four_mirrors_become_the_two_of_the_whole_rotation():
+    """Stop 12 at its end: mirrors 1 and 4 do what the four did."""
+    _, case = (case for case in tried()["tried"] if case["id"] == "four-numbers")
+    product = np.eye(3)
+    for pane in case["panes"]:
+        corners = np.reshape(pane, (-1, 3))
+        normal = unit_vector(np.cross(corners[1] - corners[0], corners[2] - corners[0]))
+        product = (np.eye(3) - 2 * np.outer(normal, normal)) @ product
+    assert len(case["panes"]) == 2
+    # A matrix that rotates vectors is the transpose of the one that converts components.
+    whole = dcm_from_axis_angle(FOUR, np.radians(70)) @ dcm_from_axis_angle(SECOND, np.radians(50))
+    assert product == pytest.approx(whole.T, abs=1e-6)
 
 
 def test_the_cable_hangs_on_camera_and_wall_and_after_two_turns_it_is_flat():

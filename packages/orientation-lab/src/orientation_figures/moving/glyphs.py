@@ -29,6 +29,8 @@ LABELS = (
     r"\psi",
     r"\theta",
     r"\theta/2",
+    r"\cos\theta/2",
+    r"\sin\theta/2",
     r"\varphi",
     "q_0",
     "q_i",

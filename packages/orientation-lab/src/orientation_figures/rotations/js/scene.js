@@ -18,7 +18,7 @@ export const LIGHT = unit([0.55, 0.1, 1]);
 // The distance of the eye; what it looks at, and half of what it sees there; the half when it looks closely, at the camera.
 export const DISTANCE = 8.5;
 const TARGET = [0, 0, -0.42], HALF = 2.46, CLOSE = 1.75;
-const REACH = 1.62, LOOKING = 1.2;
+const REACH = 1.62, LOOKING = 1.2, UNIT = 1.35;
 const mix = (a, b, part) => a + (b - a) * part;
 const clamp = (value) => Math.min(1, Math.max(0, value));
 // Go from 0 to 1 as t goes from one moment to another, smoothly at both ends.
@@ -230,7 +230,7 @@ export const AT_READER = poses([-38, 18, 0])[0];
 export const GENERIC = poses([28, 24, -22])[0];
 export const CROOKED = poses([84, 32, -58])[0];
 export const FROM = poses([-80, 60, -30])[0], TO = poses([100, 65, 40])[0];   // of stop 14
-const SWING = deg(90), TILT = deg(70), FOUR = unit([0.5, 0.35, 0.8]);   // of stop 6, and the line of stop 12
+const SWING = deg(90), TILT = deg(70), FOUR = unit([0.48, 0.39, 0.79]);   // of stop 6, and the line of stop 12
 // At the star, and from there to the second triple of its angles, one motor after the other.
 const TOWARDS_STAR = poses([0, 0, -30], [22, 0, -30], [22, 36, -30], [22, 36, 0], [22, 36, 0], [202, 36, 0], [202, 144, 0], [202, 144, 180]);
 export const CABLE = { wall: 2.05, start: 0.5 };
@@ -239,7 +239,7 @@ export const axisOf = (start) => axisAngleFromDcm(frames(start).D);
 // The position of the eye where it differs from the usual one.
 // Its azimuth and height, and how close it is, from 0 to 1.
 export const EYES = { 'one-motor': [52, 17, 0.5], 'nine-shadows': [52, 17, 0.5], 'looking-back': [52, 38, 0], lock: [52, 40, 0], 'one-turn': [52, 17, 0.5],
-  'two-mirrors': [25, 40, 0.6], 'four-numbers': [52, 17, 0.6], 'not-home': [8, 24, 0.6], 'between-poses': [64, 50, 0.7], 'it-moves': [52, 17, 0.8] };
+  'two-mirrors': [25, 40, 0.6], 'four-numbers': [79, 34, 0.6], 'not-home': [8, 24, 0.6], 'between-poses': [64, 50, 0.7], 'it-moves': [52, 17, 0.8] };
 
 // The course of the angles and the rest at a moment of a stop; start: the pose in which the stop was entered. Each
 // paragraph of the stop's text has an equal share of the time from 0 to 1, so that the figure shows what it says.
@@ -255,7 +255,8 @@ export const COURSE = {
   lock: (t) => ({ angles: through(poses([0, 20, 0], [0, 90, 0], [0, 90, 0], [-50, 90, 50]), t, [0.01, 0.12, 0.26, 0.42]) }),
   'one-turn': (t, start) => ({ part: between(t, 0.04, 0.3), start }),
   'two-mirrors': (t) => ({ angles: ZERO, together: 0.5 * between(t, 0.27, 0.36) + 0.5 * between(t, 0.53, 0.66), apart: between(t, 0.38, 0.48) }),
-  'four-numbers': (t) => ({ whole: 2 * PI * (0.4 * between(t, 0.01, 0.14) + 0.6 * between(t, 0.36, 0.6)) }),
+  'four-numbers': (t) => ({ whole: 2 * PI * (0.3 * between(t, 0.01, 0.12) + 0.7 * between(t, 0.52, 0.68)), laid: between(t, 0.27, 0.36),
+    pairs: t > 0.76 ? 1 : 0, faded: t > 0.76 ? 1 : 0, joined: between(t, 0.84, 0.96) }),
   'not-home': (t) => ({ angles: ZERO, turn: 2 * PI * (between(t, 0.01, 0.12) + between(t, 0.6, 0.66)),
     passed: t < 0.6 ? between(t, 0.41, 0.49) + between(t, 0.51, 0.59) : between(t, 0.68, 0.75) }),
   'between-poses': (t) => ({ part: between(t, 0.36, 0.95) }),
@@ -408,12 +409,9 @@ const SHOWS = {
     const way = (angle) => add(scale(Math.cos(angle), u), scale(Math.sin(angle), v));
     const first = deg(20) - s.together * deg(52), gap = deg(35) + s.apart * deg(30), second = first + gap;
     for (const [angle, name] of [[first, '\\hat{u}_1'], [second, '\\hat{u}_2']]) {
-      const edge = (side, high) => add(scale(1.45 * side, way(angle)), scale(high, axis));
-      scene.ribbon([edge(-1, -1.25), edge(1, -1.25)], [edge(-1, 1.25), edge(1, 1.25)], 'glass', 0.34);
-      scene.rod(ZERO, edge(1, 0), 0.008, 'accent');
-      scene.label(edge(1.04, 0), name, 'accent');
-      const frame = [edge(-1, -1.25), edge(1, -1.25), edge(1, 1.25), edge(-1, 1.25), edge(-1, -1.25)];
-      frame.slice(1).forEach((corner, k) => scene.rod(frame[k], corner, 0.016, 'metal'));
+      mirror(scene, axis, way(angle));
+      scene.rod(ZERO, scale(1.45, way(angle)), 0.008, 'accent');
+      scene.label(scale(1.5, way(angle)), name, 'accent');
     }
     scene.dashes(scale(-1.6, axis), scale(1.6, axis), 0.02, 'accent', 10);
     scene.label(scale(1.62, axis), '\\hat{e}', 'accent');
@@ -432,30 +430,30 @@ const SHOWS = {
     scene.label(scale(1, way(deg(-32) + gap)), '\\theta', 'accent');
     scene.sweep(axis, 2 * gap, scale(0.95, way(deg(-32))), 'accent', { thick: 0.022 });
   },
-  'four-numbers'(scene, s, { D }) {
-    const [axis, angle] = turnOf(s), half = angle / 2, aside = Math.abs(axis[2]) > 0.99 ? [1, 0, 0] : [0, 0, 1];
-    scene.dashes(scale(-1.9, axis), scale(1.9, axis), 0.02, 'accent', 13);
-    scene.label(scale(1.9, axis), '\\hat{e}', 'accent');
-    const arm = scale(1.3, unit(cross(axis, aside)));
-    scene.sweep(axis, angle % (2 * PI), arm, 'D', { thick: 0.024 });
-    scene.circle(axis, arm, 'muted', { thick: 0.008 });
-    // Along the axis is the vector part, as long as the sine of half the angle.
-    if (Math.abs(Math.sin(half)) > 0.05) scene.arrow(ZERO, scale(1.5 * Math.sin(half), axis), 'accent', { thick: 0.045 });
-    scene.triad('D', D, { reach: 1.15, thick: 0.022, labels: false });
-    // The circle of the half angle, flat in front of the eye.
-    const [right, up] = s.view, middle = add(s.target, scale(-0.65 * s.half, right), scale(0.66 * s.half, up)), r = 0.24 * s.half;
-    const at = (angle, far = r) => add(middle, scale(far * Math.sin(angle), right), scale(far * Math.cos(angle), up));
-    scene.circle(s.view[2], scale(r, up), 'muted', { thick: 0.014, origin: middle });
-    scene.rod(at(0, -r), at(0), 0.008, 'muted');
-    scene.rod(at(PI / 2, -r), at(PI / 2), 0.008, 'muted');
-    const point = at(half), [c, d] = [Math.cos(half), Math.sin(half)];
-    scene.rod(middle, point, 0.016, 'accent');
-    scene.rod(middle, add(middle, scale(r * c, up)), 0.028, 'ink');
-    scene.rod(add(middle, scale(r * c, up)), add(middle, scale(r * c, up), scale(r * d, right)), 0.028, 'accent');
-    scene.ball(point, 0.075, 'accent');
-    scene.ball(at(half + PI), 0.05, 'metal');
-    scene.label(at(half, r + 0.06), 'q', 'accent', middle);
-    scene.label(at(half + PI, r + 0.02), '-q', 'ink', middle);
+  'four-numbers'(scene, s) {
+    const [axis, angle] = turnOf(s), pairs = s.free || Math.abs(angle - 2 * PI) > 0.01 ? 0 : s.pairs;
+    scene.alpha = pairs;
+    if (pairs) fourMirrors(scene, s.joined);
+    scene.alpha = 1 - pairs;
+    const aside = Math.abs(axis[2]) > 0.99 ? [1, 0, 0] : [0, 0, 1], first = unit(cross(aside, axis)), second = turned(axis, angle / 2, first);
+    const [cosine, sine] = [Math.cos(angle / 2), Math.sin(angle / 2)], foot = scale(UNIT * cosine, first);
+    for (const way of [first, second]) mirror(scene, axis, way, 0.16);
+    scene.dashes(scale(-1.6, axis), scale(1.7, axis), 0.014, 'accent', 13);
+    scene.label(scale(1.7, axis), '\\hat{e}', 'accent');
+    scene.sweep(axis, angle % (2 * PI), scale(0.3, first), 'D', { origin: scale(1.4, axis), thick: 0.022 });
+    scene.arrow(ZERO, scale(UNIT, first), 'ink', { thick: 0.018, label: '\\hat{u}_1' });
+    scene.arrow(ZERO, scale(UNIT, second), 'ink', { thick: 0.018, label: '\\hat{u}_2' });
+    // The shadow of the second on the first is the cosine. The rest is the sine, which is also laid along the line.
+    scene.rod(ZERO, foot, 0.045, 'ink');
+    scene.rod(foot, scale(UNIT, second), 0.03, 'accent');
+    if (Math.abs(cosine) > 0.3) scene.label(add(scale(0.7, foot), scale(-0.2, second)), '\\cos\\theta/2', 'ink', scale(0.7, foot));
+    if (Math.abs(sine) > 0.3) scene.label(scale(0.6, add(foot, scale(UNIT, second))), '\\sin\\theta/2', 'accent');
+    const laid = UNIT * sine * s.laid;
+    if (Math.abs(laid) > 0.05) scene.arrow(ZERO, scale(laid, axis), 'accent', { thick: 0.045 });
+    scene.alpha *= s.laid;
+    scene.triad('A', IDENTITY, { reach: UNIT, thick: 0.016 });
+    for (const k of [0, 1, 2]) shadow(scene, axis, IDENTITY[k], laid);
+    scene.alpha = 1;
   },
   'not-home'(scene, s) {
     const count = 64, left = [], right = [];
@@ -508,6 +506,30 @@ const SHOWS = {
     scene.triad('D', D, { reach: 1.5, labels: false });
   },
 };
+
+// A mirror through the line of the axis, and through a direction at right angles to it.
+function mirror(scene, axis, way, alpha = 0.34, size = 1, rim = 'metal') {
+  const corner = (side, high) => add(scale(1.45 * size * side, way), scale(1.25 * size * high, axis));
+  scene.ribbon([corner(-1, -1), corner(1, -1)], [corner(-1, 1), corner(1, 1)], 'glass', alpha);
+  const frame = [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1), corner(-1, -1)];
+  frame.slice(1).forEach((end, k) => scene.rod(frame[k], end, 0.014, rim, { alpha: Math.min(1, 3 * alpha) }));
+}
+
+// Two pairs of mirrors, each about its own line. Swung together, the last of the first pair and the first of the second
+// lie in the plane of both lines.
+function fourMirrors(scene, joined) {
+  const lines = [FOUR, unit([-0.6, 0.3, 0.75])], common = unit(cross(...lines)), swing = 1 - joined;
+  const mirrors = [[0, -45 * swing - 35], [0, -45 * swing], [1, 80 * swing], [1, 25 + 80 * swing]].map(([pair, angle]) => (
+    { line: lines[pair], way: turned(lines[pair], deg(angle), unit(cross(common, lines[pair]))) }));
+  mirrors.forEach(({ line, way }, k) => {
+    const alpha = 0.2 * (k === 1 || k === 2 ? swing : 1);
+    mirror(scene, line, way, alpha, 0.8, k < 2 ? 'accent' : 'ink');
+    scene.label(add(scale(1.16, way), line), String(k + 1), 'ink', ZERO, 5 * alpha);
+  });
+  for (const line of lines) scene.dashes(scale(-1.6, line), scale(1.6, line), 0.016, 'muted', 13, swing);
+  const left = unit(cross(...[0, 3].map((k) => cross(mirrors[k].line, mirrors[k].way))));
+  scene.dashes(scale(-1.8, left), scale(1.8, left), 0.02, 'accent', 13, joined);
+}
 
 // The line and the angle of stop 12: those of the text, or of the pose in the reader's hand.
 export const turnOf = (s) => (s.free ? axisOf(s.angles) : [FOUR, s.whole]);
@@ -564,7 +586,7 @@ export function viewOf(s) {
 
 // The other entries of a state, besides those that a stop changes.
 export const REST = { stop: 'which-way', t: 0, angles: AT_READER, eye: [52, 17, 0], ride: 0, away: 0, lit: 0, part: 0, whole: 0, turn: 0,
-  passed: 0, together: 0, apart: 0, time: 0, own: 0, faded: 0, start: GENERIC, free: false, thrown: null, track: [] };
+  passed: 0, together: 0, apart: 0, laid: 0, pairs: 0, joined: 0, time: 0, own: 0, faded: 0, start: GENERIC, free: false, thrown: null, track: [] };
 
 // Return everything that is seen in a state: { items, labels, view, frames }.
 export function sceneOf(state) {
@@ -578,8 +600,8 @@ export function sceneOf(state) {
   s.D = D;
   const shown = { ground: stop.ground ?? 1, machine: stop.machine, camera: stop.camera, A: stop.A, D: stop.D, ...state.shown };
   scene.ground(shown.ground);
-  scene.machine(all, mix(shown.machine, 0.09, s.faded), mix(shown.camera, 0.15, s.faded), shown.ground > 0.5);
-  if (shown.A > 0.02) scene.triad('A', IDENTITY, { alpha: shown.A });
+  scene.machine(all, mix(shown.machine, Math.min(shown.machine, 0.09), s.faded), mix(shown.camera, 0.15, s.faded), shown.ground > 0.5);
+  if (shown.A > 0.02) scene.triad('A', IDENTITY, { alpha: shown.A, thick: 0.024 });   // hidden by an arrow of the camera that lies on it
   if (shown.D > 0.02) scene.triad('D', D, { alpha: shown.D, reach: stop.id === 'looking-back' ? LOOKING : REACH });
   SHOWS[s.stop]?.(scene, s, all);
   return { items: scene.items, labels: scene.labels, view: s.view, target: s.target, half: s.half, frames: all, angles };

@@ -25,9 +25,9 @@ const stills = STOPS.map((stop) => {
     labels: labels.map(({ at, text, colour }, k) => [text, LABELS[text] && colour !== 'muted' ? 1 : 0, colour, places[k].map((value) => Math.round(10 * value) / 10), round(at)]) };
 });
 // Two moments of each, with the camera's frames then: tests compare them with the book's Python.
-const tried = STOPS.flatMap((stop) => [0.37, 0.83].map((t) => {
-  const state = stateAt(stop, t), { frames } = sceneOf(state);
-  return { id: stop.id, t, state: { ...state, shown: undefined }, frames };
+const tried = STOPS.flatMap((stop) => [0.37, 0.97].map((t) => {
+  const state = stateAt(stop, t), { frames, items } = sceneOf(state);
+  return { id: stop.id, t, state: { ...state, shown: undefined }, frames, panes: items.filter(({ shape }) => shape === 'ribbon').map(({ of }) => of) };
 }));
 const seen = [[0.3, -0.4, 0.9], [1, 0.2, -1.1]].map((point) => [point, project(stills[0], point)]);
 process.stdout.write(JSON.stringify({ size: SIZE, distance: DISTANCE, ground: GROUND, rim: RIM, light: LIGHT, axes: AXES, stills, ...(process.argv.includes('--tried') && { tried, seen }) }));

@@ -24,7 +24,7 @@ const DIALS = {
   whole: ['rotation of the camera', 0, 720, 1, DEGREES, '°'], turn: ['rotation of the camera', 0, 720, 1, DEGREES, '°'],
   passed: ['pass the cable round', 0, 200, 1, 100, '%'], time: ['time', 0, LASTS, 0.1, 1, ' s'],
 };
-const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time', 'own', 'faded'];
+const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'laid', 'pairs', 'joined', 'time', 'own', 'faded'];
 const FADES = ['machine', 'camera', 'A', 'D', 'ground'];
 const SWING = [0.5, 0.4, 1.1];   // along A, in radians a second
 const stopOf = (id) => STOPS.find((candidate) => candidate.id === id);
@@ -332,7 +332,8 @@ class World {
       },
       'one-turn': () => (home < deg(0.5) ? `${look} It is home.` : `${look} From here, one rotation of ${say(home)} leads home.`),
       'two-mirrors': () => `The mirrors are ${gap} degrees apart, and the arrow has turned ${2 * gap} degrees.`,
-      'four-numbers': () => `Turned ${say(turn)}: the point is at ${say(turn / 2)}.`,
+      'four-numbers': () => (state.pairs > 0.5 ? 'Two rotations are four mirrors. Swung until 2 and 3 coincide, they are two.'
+        : `Turned ${say(turn)}: the arrows of the mirrors are ${say(turn / 2)} apart.`),
       'not-home': () => this.cable(),
       'between-poses': () => this.way(D),
       'it-moves': () => (state.free ? look : `After ${state.time.toFixed(1)} seconds the ghost is ${say(apart(D, motion(state.time, state.thrown).told))} off.`),
