@@ -1,7 +1,7 @@
 """The drawing methods of pictures: arrows, triads, rotations, circles, bodies.
 
 They draw lines and areas as paths on a sheet with the attributes ``view``, ``size``, ``on_sheet``,
-``path`` and ``text``. ``python -m orientation_figures.moving.javascript`` translates them for the
+``path`` and ``text``. ``orientation_figures.moving.javascript`` translates them for the
 sheets of the page. Hidden parts shrink to nothing instead of being left out, so that an
 ``Animation`` finds the same marks at every moment.
 """

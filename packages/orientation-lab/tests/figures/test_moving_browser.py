@@ -35,7 +35,7 @@ MOST_WRITTEN = 300  # attributes, texts and elements that one picture of a drag 
 
 def test_every_figure_is_tested():
     assert {"triad", "gimbal", "nine_numbers"} <= set(KINDS)
-    modules = {path.stem for path in (bundle.FOLDER / "js").glob("*.js")}
+    modules = {path.stem for path in (bundle.FOLDER / "js").glob("*.js")} | {*bundle.DESCRIBED}
     # The explorer needs Python for its algebra: tests/test_explorer.py and test_live.py. A formula
     # that is taken away is no drawing: test_take_away.py.
     own = {own for names in bundle.OWN.values() for own in names}

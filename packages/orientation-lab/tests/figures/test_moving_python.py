@@ -125,11 +125,6 @@ def test_the_labels_are_kept_as_they_are_set():
     )
 
 
-def test_the_pictures_are_what_python_describes():
-    written = {file: file.read_text("utf8") for file in javascript.FOLDER.glob("js/*_picture.js")}
-    assert written == javascript.files(), f"run `{javascript.COMMAND}`"
-
-
 def test_what_the_page_takes_in_order_is_not_named():
     """JavaScript has no arguments by name: a colour would be an object there, and no colour."""
     with pytest.raises(ValueError, match="pass the arguments of line by position"):
@@ -158,9 +153,7 @@ def texts_of(source):
 
 @pytest.mark.parametrize("kind", [figure.kind for figure in FIGURES])
 def test_every_formula_of_a_figure_can_be_set(kind):
-    source = "".join(
-        map(bundle.source, (kind, f"{kind}_picture") if kind in bundle.PICTURES else (kind,))
-    )
+    source = bundle.source(kind) + bundle.source(f"{kind}_picture")
     formulas = [formula for text in texts_of(source) for formula in text.split("$")[1::2]]
     patterns = {formula: "[^ ]+".join(map(re.escape, formula.split("\0"))) for formula in formulas}
     assert patterns, "no formulas were found"

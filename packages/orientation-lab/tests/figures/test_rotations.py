@@ -158,7 +158,7 @@ def test_the_four_numbers_are_those_of_two_mirrors():
     first, second = way[r"\hat{u}_1"], way[r"\hat{u}_2"]
     (cosine,) = (item for item in rods if item[5] == "ink" and item[4][0] == 0.045)
     (sine,) = (item for item in rods if item[5] == "accent" and item[4][0] == 0.03)
-    unit = 1.35
+    unit = 1.22
     assert cosine[4][2] / unit == pytest.approx(first @ second, abs=1e-3)
     assert sine[4][2] / unit == pytest.approx(np.linalg.norm(np.cross(first, second)), abs=1e-3)
     vector = np.cross(first, second)

@@ -9,22 +9,25 @@ from functools import cache
 from pathlib import Path
 
 from ..style import STYLE
+from .javascript import translated
 
 FOLDER = Path(__file__).parent
 SHARED = (
     "formulas", "mathematics", "words_picture", "common_picture", "glyphs", "model", "address",
     "shared",
 )  # fmt: skip
-# The pictures that ``pictures`` describes and ``javascript`` has translated.
-PICTURES = sorted(
-    path.name.removesuffix("_picture.js") for path in (FOLDER / "js").glob("*_picture.js")
-)
+# The files of the pictures, by the names of their modules in JavaScript. ``words`` has the methods
+# of a sheet.
+DESCRIBED = {
+    f"{path.stem}_picture": path
+    for path in (FOLDER.parent / "words.py", *sorted((FOLDER / "pictures").glob("[!_]*.py")))
+}
 # Modules that only one figure needs, to be loaded before its own.
 OWN = {"workbench": ("mismatch",), "converter": ("take_away",), "formula": ("take_away",)}
 OWN |= {
-    name: (*OWN.get(name, ()), f"{name}_picture")
-    for name in PICTURES
-    if f"{name}_picture" not in SHARED
+    path.stem: (*OWN.get(path.stem, ()), picture)
+    for picture, path in DESCRIBED.items()
+    if picture not in SHARED
 }
 # Figures that use npm packages. This script is the source of what their page loads when they come
 # into view, and each has its own style sheet.
@@ -76,7 +79,11 @@ COMMENT = re.compile(r"^\s*//.*\n|^ +| {2,}// .*$", re.MULTILINE)
 @cache
 def source(name):
     """Return the text of a module without comments and indentation, which only add size."""
-    return COMMENT.sub("", (FOLDER / "js" / f"{name}.js").read_text("utf8"))
+    if name in DESCRIBED:
+        text = translated(DESCRIBED[name])
+    else:
+        text = (FOLDER / "js" / f"{name}.js").read_text("utf8")
+    return COMMENT.sub("", text)
 
 
 def body(name):

@@ -1,10 +1,9 @@
-"""Translate the pictures of the interactive figures to JavaScript, in ``js/*_picture.js``.
+"""Translate the pictures of the interactive figures to JavaScript.
 
-Run it with ``python -m orientation_figures.moving.javascript``. The content of a figure is
-described once, in ``pictures``: functions of its state that use the methods of a sheet
-(`orientation_figures.words`) and the functions of `orientation_figures.vectors`. Python draws
-stills with them; this module translates them, statement by statement, for the figures in the page.
-The files are committed with the others, as the figures need them where nothing can be translated.
+The content of a figure is described once, in ``pictures``: functions of its state that use the
+methods of a sheet (`orientation_figures.words`) and the functions of `orientation_figures.vectors`.
+Python draws stills with them; this module translates them, statement by statement, for the figures
+in the page.
 
 A description consists of functions, constants, loops and comprehensions, conditions and lists.
 Keyword arguments become an object, and the optional arguments of a method must be passed by name.
@@ -15,10 +14,6 @@ one.
 
 import ast
 import re
-
-from .bundle import FOLDER
-
-COMMAND = "python -m orientation_figures.moving.javascript"
 
 _NAMES = {"len": "{}.length", "abs": "Math.abs({})", "list": "[...{}]"}
 # Methods of a sheet that take their arguments in order, in both languages.
@@ -32,8 +27,6 @@ _METHODS = {
     "lower": "toLowerCase",
     "startswith": "startsWith",
 }
-# The module with the methods of the sheets. The pictures have a folder.
-_WORDS = FOLDER.parent / "words.py"
 _OPERATORS = {
     ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Mod: ("%", 2),
     ast.Pow: ("**", 3), ast.Eq: "===", ast.NotEq: "!==", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">",
@@ -73,7 +66,7 @@ def translated(path):
                 ]
                 parts.append((node, f"\nexport class {name} {braces(methods)}"))
     used = {part.id for node, _ in parts for part in ast.walk(node) if isinstance(part, ast.Name)}
-    lines = [f"// Written by `{COMMAND}` from {path.relative_to(FOLDER.parent)}."]
+    lines = []
     for module in sorted({modules[name] for name in used & set(modules)}):
         names = ", ".join(
             sorted(camel(name) for name in used & set(modules) if modules[name] == module)
@@ -309,14 +302,3 @@ def filled(part):
     if isinstance(part, ast.Constant):
         return quoted(part.value, "`")[1:-1]
     return f"${{{expression(part.value)}}}"
-
-
-def files():
-    """Return all files to write, by name."""
-    paths = [*sorted((FOLDER / "pictures").glob("[!_]*.py")), _WORDS]
-    return {FOLDER / "js" / f"{path.stem}_picture.js": translated(path) for path in paths}
-
-
-if __name__ == "__main__":
-    for file, text in files().items():
-        file.write_text(text, "utf8")

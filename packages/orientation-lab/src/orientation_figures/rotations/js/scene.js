@@ -5,9 +5,8 @@
 // z-x-y: the first motor rotates about a_z, the second about b_x, the third about c_y, and the lens looks along d_y. So
 // the three angles are longitude, height and roll.
 import { AXES, IDENTITY, SEQUENCES, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
-  dcmFromQuaternion, dot, length, multiply, quaternionFromDcm, scale, simpleDcm, slerp, subtract,
+  dcmFromQuaternion, dot, length, multiply, quaternionAt, quaternionFromDcm, scale, simpleDcm, slerp, subtract,
   times, transpose, unit, wrapped } from '../../moving/js/mathematics.js';
-import { quaternionAt } from '../../moving/js/belt_picture.js';
 import { STOPS } from './stops.js';
 
 const PI = Math.PI;
@@ -18,7 +17,7 @@ export const LIGHT = unit([0.55, 0.1, 1]);
 // The distance of the eye; what it looks at, and half of what it sees there; the half when it looks closely, at the camera.
 export const DISTANCE = 8.5;
 const TARGET = [0, 0, -0.42], HALF = 2.46, CLOSE = 1.75;
-const REACH = 1.62, LOOKING = 1.2, UNIT = 1.35;
+const REACH = 1.62, LOOKING = 1.2, UNIT = 1.22;
 const mix = (a, b, part) => a + (b - a) * part;
 const clamp = (value) => Math.min(1, Math.max(0, value));
 // Go from 0 to 1 as t goes from one moment to another, smoothly at both ends.
@@ -354,7 +353,11 @@ const SHOWS = {
     scene.triad('D', other, { origin: at, reach: 0.85, alpha: 0.55, thick: 0.018 });
   },
   'three-are-enough'(scene, s, { D }) {
-    scene.star(scale(1.95, STAR));
+    // The line from the star down to the height of the horizon shows where it is.
+    const star = scale(1.95, STAR), below = [star[0], star[1], 0];
+    scene.star(star);
+    scene.dashes(star, below, 0.008, 'muted', 10);
+    scene.ball(below, 0.03, 'muted');
     const [psi, theta] = s.angles, flat = [-Math.sin(psi), Math.cos(psi), 0];
     scene.circle(UP, [1.38, 0, 0], 'muted', { thick: 0.009 });
     scene.sweep(UP, psi % (2 * PI), [0, 1.38, 0], 'B', { thick: 0.022 });
@@ -446,7 +449,7 @@ const SHOWS = {
     // The shadow of the second on the first is the cosine. The rest is the sine, which is also laid along the line.
     scene.rod(ZERO, foot, 0.045, 'ink');
     scene.rod(foot, scale(UNIT, second), 0.03, 'accent');
-    if (Math.abs(cosine) > 0.3) scene.label(add(scale(0.7, foot), scale(-0.2, second)), '\\cos\\theta/2', 'ink', scale(0.7, foot));
+    if (Math.abs(cosine) > 0.3) scene.label(add(scale(0.7, foot), scale(-0.2, cross(axis, first))), '\\cos\\theta/2', 'ink', scale(0.7, foot));
     if (Math.abs(sine) > 0.3) scene.label(scale(0.6, add(foot, scale(UNIT, second))), '\\sin\\theta/2', 'accent');
     const laid = UNIT * sine * s.laid;
     if (Math.abs(laid) > 0.05) scene.arrow(ZERO, scale(laid, axis), 'accent', { thick: 0.045 });

@@ -50,6 +50,6 @@ export const STOPS = [
     before: 'A tumbling camera, and a red ghost that adds up the readings of a gyroscope.',
     after: 'The ghost has drifted away, a little with every small rotation.' },
   { id: 'your-turn', machine: 1, camera: 1, A: 1, D: 1, still: 0, dials: MOTORS,
-    before: 'The whole gimbal again, in the pose that it had before.',
-    after: 'The whole gimbal again, in the pose that it had before.' },
+    before: 'The whole gimbal again.',
+    after: 'The whole gimbal again.' },
 ];

@@ -1,12 +1,11 @@
 // The figure of the essay in the page: it stays while the text scrolls past and moves it, and the reader may take hold
 // of it at any moment. What is shown follows the goal smoothly, a little later.
 import { carriedBy, fragmentOf } from '../../moving/js/address.js';
-import { AXES, add, dot, length, quaternionFromDcm, scale, several, times, transpose, unit, wrapped } from '../../moving/js/mathematics.js';
+import { AXES, add, dot, fullTurns, length, quaternionFromDcm, scale, several, times, transpose, unit, wrapped } from '../../moving/js/mathematics.js';
 import { calm, element, put, words, write } from '../../moving/js/shared.js';
 import { LABELS } from '../../moving/js/glyphs.js';
-import { fullTurns } from '../../moving/js/belt_picture.js';
 import { Sensors } from '../../moving/js/phone.js';
-import { AT_READER, COURSE, CROOKED, EYES, FROM, LASTS, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
+import { AT_READER, COURSE, CROOKED, EYES, FROM, GENERIC, LASTS, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
   project, sceneOf, turnOf, turned, turnedAlong, turnedFrame, WHOLE_WAYS } from './scene.js';
 import { Painter } from './paint.js';
 import { STOPS } from './stops.js';
@@ -152,8 +151,9 @@ class World {
     // The one rotation leads home from the pose that the reader left; from a pose nearly at home it would show nothing.
     const angles = anglesNear(before, this.state.angles);
     this.state.angles = angles;
-    // The last stop keeps the pose as it was left.
-    this.state.start = id === 'your-turn' || (free && axisOf(angles)[1] > 0.6) ? angles : CROOKED;
+    // The last stop keeps a pose of the reader's.
+    if (id === 'your-turn') this.state.start = free ? angles : GENERIC;
+    else this.state.start = free && axisOf(angles)[1] > 0.6 ? angles : CROOKED;
     if (!first && stop.by === 'camera') this.carry = { from: quaternionFromDcm(before), since: null };
     this.goal.eye = [...EYES[id] ?? REST.eye];
     this.showDials(stop);
@@ -327,7 +327,7 @@ class World {
       'same-numbers': () => look.replace('The', 'The blue'),
       lock: () => {
         const margin = Math.abs(Math.abs(wrapped(state.angles[1])) - PI / 2);
-        return margin < deg(1) ? `${look} Locked: the first and the third motor turn about one line.`
+        return margin < deg(1) ? `Locked: the first and the third motor turn about one line.${state.t > 0.52 ? ' No motor can follow the star.' : ''}`
           : `${look} The axes of the first and the third motor are ${say(margin < PI / 2 ? margin : PI - margin)} apart.`;
       },
       'one-turn': () => (home < deg(0.5) ? `${look} It is home.` : `${look} From here, one rotation of ${say(home)} leads home.`),
