@@ -1,37 +1,120 @@
 """An engineer pastes raw numbers from threads and consoles into the command."""
 
+import io
 import subprocess
 import sys
+from contextlib import redirect_stderr, redirect_stdout
+from functools import partial
 
 import pytest
 from places import REPOSITORY
 
-
-def explained(*arguments):
-    done = subprocess.run(
-        [sys.executable, "-m", "orientation_workbench", "explain", *arguments],
-        capture_output=True,
-        text=True,
-    )
-    return done.returncode, done.stdout + done.stderr
+from orientation_workbench.command import main
 
 
-def test_noise_makes_no_opposite_turns_the_same():
-    """Small angles, taken as degrees, hardly move, so that a degree of noise fits anything."""
-    code, answer = explained("--noise", "1", "0.21 0.13 -0.32", "-0.21 -0.13 0.32")
-    assert code == 2 and "the same orientation" not in answer
-    assert "one is the rotation in the opposite sense" in answer
+def answered(command, *arguments):
+    """Return the exit code of the command `orientation`, and all that it prints."""
+    printed = io.StringIO()
+    with (
+        redirect_stdout(printed),
+        redirect_stderr(printed),
+        pytest.raises(SystemExit) as ended,
+    ):
+        main([command, *map(str, arguments)])
+    return ended.value.code, printed.getvalue()
 
 
-def test_where_the_noise_exceeds_the_motion_nothing_is_judged():
-    code, answer = explained("--noise", "5", "0.9999 0.0087 0.0052 0.0087", "0.9999 0 0.0141 0")
-    assert code == 3 and "too small to judge" in answer and "5 degrees" in answer
+explained, bench = partial(answered, "explain"), partial(answered, "recording")
 
 
-def test_degrees_against_radians_is_no_agreement():
-    code, answer = explained("10 20 30", "0.17453 0.34907 0.52360")
-    assert code == 2 or (code == 1 and "degrees" in answer)
-    assert "the first numbers are in degrees, the second in radians" in answer
+# What a reader gives, the exit code, and what the answer has to say.
+ASKED = {
+    # Small angles, taken as degrees, hardly move, so that a degree of noise fits anything.
+    "opposite rotations with noise": (
+        ["--noise", "1", "0.21 0.13 -0.32", "-0.21 -0.13 0.32"],
+        2,
+        ["one is the rotation in the opposite sense"],
+    ),
+    "more noise than motion": (
+        ["--noise", "5", "0.9999 0.0087 0.0052 0.0087", "0.9999 0 0.0141 0"],
+        3,
+        ["too small to judge", "5 degrees"],
+    ),
+    "degrees against radians": (
+        ["10 20 30", "0.17453 0.34907 0.52360"],
+        2,
+        ["the first numbers are in degrees, the second in radians"],
+    ),
+    # Either side may be the one whose rotations are about axes that stay, as in ROS.
+    "yaw, pitch, roll against roll, pitch, yaw": (
+        ["yaw 30 pitch 20 roll 10", "10 20 30"],
+        2,
+        [
+            "which side's about axes that stay fixed (space fixed)?",
+            '--first-is "body fixed" --second-is "space fixed"',
+        ],
+    ),
+    "which of them is space fixed": (
+        ["--first-is", "body fixed", "--second-is", "space fixed", "yaw 30 pitch 20 roll 10",
+         "10 20 30"],
+        0,
+        ["the same orientation"],
+    ),
+    # Axes may be renamed.
+    "two sequences": (
+        ["-56.523 -7.955 58.222", "-14.216 -55.698 46.402"],
+        2,
+        [
+            "Which sequence of rotations does the first program use?",
+            "--first-is zyx --second-is yzx",
+            "--first-is yxz --second-is xyz",
+        ],
+    ),
+    "which of them is the first": (
+        ["--first-is", "zyx", "-56.523 -7.955 58.222", "-14.216 -55.698 46.402"],
+        1,
+        ["in the second numbers the sequence of rotations is y-z-x"],
+    ),
+    "one special pose": (
+        ["[3.14,0.2623,0]",
+         "array([ 9.91411844e-01,  1.04139110e-04, -1.30774311e-01,  7.89487983e-04])"],
+        2,
+        ["do not determine the cause"],
+    ),
+    "a quaternion in lines": (
+        ["w 0.7304\nx 0.3604\ny 0.2402\nz 0.5284", "0.3604 0.2402 0.5284 0.7304"],
+        1,
+        ["scalar part comes last"],
+    ),
+    "a rounded quaternion": (
+        ["qw: 0.782240  qx: 0.589819  qy: 0.199939  qz: 0.000000",
+         "qw: 0.000000  qx: 0.782240  qy: 0.589819  qz: 0.199939"],
+        2,
+        ["has length 0.999881, not 1. We normalised it."],
+    ),
+    "a whole file of BVH": (
+        [
+            "HIERARCHY\nROOT Hips\n{\n  OFFSET 0.00 0.00 0.00\n"
+            "  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n}\n"
+            "MOTION\nFrames: 1\nFrame Time: 0.033333\n8.03 35.01 88.36 -3.41 14.78 -164.35",
+            "0.7304 0.3604 0.2402 0.5284",
+        ],
+        3,
+        ["only the three angles of one joint", "CHANNELS"],
+    ),
+    # Follow that advice: paste the joint's angles with their sequence.
+    "what was cut out of it": (
+        ["--first-is", "zxy", "-3.41 14.78 -164.35", "0.7304 0.3604 0.2402 0.5284"],
+        2,
+        ["No explanation was found"],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("arguments", "code", "words"), ASKED.values(), ids=ASKED)
+def test_what_is_asked_is_answered(arguments, code, words):
+    given, answer = explained(*arguments)
+    assert given == code and all(word in answer for word in words), answer
 
 
 #: ROS's body forward, left, up against forward, right, down: two quaternions, scalar last.
@@ -47,26 +130,6 @@ def test_two_quaternions_scalar_last_are_asked_about():
     assert " ".join(last) in answer  # the answer, ready to be typed
     code, answer = explained(*last, FLU, FRD)
     assert code == 1 and "y and z of the body reversed" in answer and "world" not in answer
-
-
-def test_yaw_pitch_roll_against_roll_pitch_yaw_is_asked_about():
-    """Either side may be the one whose turns are about axes that stay, as in ROS."""
-    angles = "yaw 30 pitch 20 roll 10", "10 20 30"
-    code, answer = explained(*angles)
-    assert code == 2 and "which side's about axes that stay fixed (space fixed)?" in answer
-    known = ("--first-is", "body fixed", "--second-is", "space fixed")
-    assert '--first-is "body fixed" --second-is "space fixed"' in answer
-    code, answer = explained(*known, *angles)
-    assert code == 0 and "the same orientation" in answer
-
-
-def test_two_sequences_are_asked_about_since_axes_may_be_renamed():
-    angles = "-56.523 -7.955 58.222", "-14.216 -55.698 46.402"
-    code, answer = explained(*angles)
-    assert code == 2 and "Which sequence of rotations does the first program use?" in answer
-    assert "--first-is zyx --second-is yzx" in answer and "--first-is yxz --second-is xyz" in answer
-    code, answer = explained("--first-is", "zyx", *angles)
-    assert code == 1 and "in the second numbers the sequence of rotations is y-z-x" in answer
 
 
 #: A camera-to-world matrix in OpenCV's axes and in OpenGL's: the camera's axes are the columns.
@@ -99,24 +162,6 @@ def test_angles_that_were_read_and_built_by_two_sequences_are_named(first):
         texts = [str(written(each)) for each in (turn, rebuilt)]
         code, answer = explained("--first-is", "xyzw", "--second-is", "xyzw", *texts)
         assert "angles were computed as" in answer and "(space fixed)" in answer, answer
-
-
-def test_one_special_pose_decides_nothing():
-    code, answer = explained(
-        "[3.14,0.2623,0]",
-        "array([ 9.91411844e-01,  1.04139110e-04, -1.30774311e-01,  7.89487983e-04])",
-    )
-    assert code == 2 and "do not determine the cause" in answer
-
-
-def test_a_quaternion_in_lines_is_read_and_one_that_is_rounded_is_said():
-    code, answer = explained(
-        "w 0.7304\nx 0.3604\ny 0.2402\nz 0.5284", "0.3604 0.2402 0.5284 0.7304"
-    )
-    assert code == 1 and "scalar part comes last" in answer
-    code, answer = explained("qw: 0.782240  qx: 0.589819  qy: 0.199939  qz: 0.000000",
-                             "qw: 0.000000  qx: 0.782240  qy: 0.589819  qz: 0.199939")  # fmt: skip
-    assert code == 2 and "has length 0.999881, not 1. We normalised it." in answer
 
 
 Q, P = "0.7304 0.3604 0.2402 0.5284", "0.7404 0.3504 0.2302 0.5254"
@@ -177,28 +222,6 @@ FILES = {
 def test_a_file_is_pasted_whole(name):
     code, answer = explained(*FILES[name])
     assert code == 0 and "the same orientation" in answer, answer
-
-
-def test_of_a_whole_file_of_bvh_one_is_told_what_to_cut_out():
-    motion = (
-        "HIERARCHY\nROOT Hips\n{\n  OFFSET 0.00 0.00 0.00\n"
-        "  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n}\n"
-        "MOTION\nFrames: 1\nFrame Time: 0.033333\n8.03 35.01 88.36 -3.41 14.78 -164.35"
-    )
-    code, answer = explained(motion, Q)
-    assert code == 3 and "only the three angles of one joint" in answer and "CHANNELS" in answer
-    # Follow the advice: paste the joint's angles with their sequence.
-    code, answer = explained("--first-is", "zxy", "-3.41 14.78 -164.35", Q)
-    assert code == 2 and "No explanation was found" in answer
-
-
-def bench(*arguments):
-    done = subprocess.run(
-        [sys.executable, "-m", "orientation_workbench", "recording", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-    )
-    return done.returncode, done.stdout + done.stderr
 
 
 # A trajectory as TUM's benchmark prints it: positions and quaternions, without an instrument.

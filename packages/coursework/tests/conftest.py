@@ -20,17 +20,30 @@ def pytest_configure(config):
         config.pluginmanager.import_plugin("own_browser")
 
 
+# Two sandboxes for all tests, each with the file that shows whether it is in use.
+LENT = []
+
+
 @pytest.fixture(scope="session")
 def lent_sandboxes(tmp_path_factory):
-    """Two sandboxes for all tests, each with the file that shows whether it is in use."""
-    if not sys.platform.startswith("linux"):
-        yield []
-        return
-    from coursework.grading.execution.sandbox import Sandbox
+    if sys.platform.startswith("linux"):
+        from coursework.grading.execution.sandbox import Sandbox
 
-    places = [tmp_path_factory.mktemp("lent") / "in-use" for _ in range(2)]
-    with contextlib.ExitStack() as stack:
-        yield [(stack.enter_context(Sandbox()), place) for place in places]
+        LENT.extend((Sandbox(), tmp_path_factory.mktemp("lent") / "in-use") for _ in range(2))
+    yield
+    for sandbox, _ in LENT:
+        sandbox.close()
+
+
+@pytest.fixture(autouse=True)
+def lost_sandboxes_are_replaced():
+    """Otherwise each later test would start a sandbox in place of one that died in use."""
+    yield
+    for number, (lost, place) in enumerate(LENT):
+        if place.exists():
+            lost.close()
+            place.unlink()
+            LENT[number] = type(lost)(), place
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +53,7 @@ def libraries_are_loaded_once(lent_sandboxes):
     A sandbox that dies, or whose user does, is not lent again. Tests of the sandbox itself, or of
     how it starts, do not get one.
     """
-    if not lent_sandboxes:
+    if not LENT:
         yield
         return
     from coursework.grading.execution import isolation, sandbox
@@ -49,7 +62,7 @@ def libraries_are_loaded_once(lent_sandboxes):
         place = None
 
         def __init__(self, limits=None, **options):
-            for lent, place in lent_sandboxes:
+            for lent, place in LENT:
                 if any(options.values()) or isolation.lacking(lent.report):
                     break
                 # Processes that grade in parallel take one each.

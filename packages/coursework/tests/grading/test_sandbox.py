@@ -150,23 +150,27 @@ def test_a_function_is_called_with_the_given_arguments(sandbox):
     assert plain["nodes"] == [["integer", "3"], ["integer", "7"]]
 
 
-def test_a_function_is_given_arrays_where_the_job_says_so(sandbox):
-    result = sandbox.run(
-        notebook(
-            "def f(x, n): return (x * n).sum() + x.ndim",
-            questions={"q": calls([[[1, 2], [3, 4]], 10], kind="arrays")},
-        )
-    )
-    assert result["answers"]["q"]["plain"]["nodes"] == [["integer", "102"]]
-
-
-def test_a_function_that_changes_its_arguments_meets_them_fresh(sandbox):
-    job = notebook(
-        "def f(x): x.append(1); return len(x)",
-        "check('q', f); check('q', f)",
-        questions={"q": calls([[]])},
-    )
-    assert sandbox.run(job)["answers"]["q"]["plain"]["nodes"] == [["integer", "1"]]
+@pytest.mark.parametrize(
+    "cells, asked, number",
+    [
+        (
+            ["def f(x, n): return (x * n).sum() + x.ndim"],
+            calls([[[1, 2], [3, 4]], 10], kind="arrays"),
+            "102",
+        ),
+        # A function that changes its arguments meets them fresh.
+        (
+            ["def f(x): x.append(1); return len(x)", "check('q', f); check('q', f)"],
+            calls([[]]),
+            "1",
+        ),
+    ],
+)
+def test_a_function_is_given_arrays_where_the_job_says_so_and_fresh_arguments(
+    sandbox, cells, asked, number
+):
+    result = sandbox.run(notebook(*cells, questions={"q": asked}))
+    assert result["answers"]["q"]["plain"]["nodes"] == [["integer", number]]
 
 
 def test_a_function_that_never_ends_costs_only_its_own_question(sandbox):
@@ -315,16 +319,17 @@ def test_a_notebook_that_works_only_out_of_order_is_told_so(sandbox):
     assert result["cells"][1]["error"].startswith("NameError")  # In the order in which it is read.
 
 
-def test_top_to_bottom_is_what_counts_where_it_works(sandbox):
-    result = sandbox.run(
-        notebook((5, "a = 1"), (4, "a = 2"), (3, "check('q', a)"), questions={"q": None})
-    )
-    assert result["answers"]["q"]["plain"] == integer(2) and result["notes"] == []
-
-
-def test_an_order_that_does_not_help_is_not_noted(sandbox):
-    result = sandbox.run(notebook((2, "check('q', nowhere)"), (1, "x = 1"), questions={"q": None}))
-    assert result["answers"]["q"] == {"outcome": "missing"} and result["notes"] == []
+@pytest.mark.parametrize(
+    "cells, answer",
+    [
+        ([(5, "a = 1"), (4, "a = 2"), (3, "check('q', a)")], integer(2)),
+        ([(2, "check('q', nowhere)"), (1, "x = 1")], "missing"),
+    ],
+)
+def test_top_to_bottom_is_what_counts_where_it_works_or_no_order_does(sandbox, cells, answer):
+    result = sandbox.run(notebook(*cells, questions={"q": None}))
+    recorded = result["answers"]["q"]
+    assert recorded.get("plain", recorded["outcome"]) == answer and result["notes"] == []
 
 
 # ---- honest notebooks

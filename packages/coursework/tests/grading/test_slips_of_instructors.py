@@ -39,12 +39,13 @@ def test_results_are_nobody_s_work(course):
         "refused": 0,
         "held": 0,
     }
-    with pytest.raises(NothingToGrade, match="Choose a different folder for the results"):
-        graded(course, course / "in", course / "in")
-    with pytest.raises(NothingToGrade, match="contains grading results"):
-        graded(course, course / "in" / "marks", course / "out")
-    with pytest.raises(NothingToGrade, match="contains the notebooks with solutions"):
-        graded(course, course / "course", course / "out")
+    for submissions, out, words in (
+        ("in", "in", "Choose a different folder for the results"),
+        ("in/marks", "out", "contains grading results"),
+        ("course", "out", "contains the notebooks with solutions"),
+    ):
+        with pytest.raises(NothingToGrade, match=words):
+            graded(course, course / submissions, course / out)
 
 
 def full(*arguments, **options):
