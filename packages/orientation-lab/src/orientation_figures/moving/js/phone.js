@@ -116,6 +116,9 @@ export function render({ model, el }) {
   const turning = numberTable({ name: 'Angular velocity along the axes of the phone, in degrees per second', columns: B,
     names: [['rate b x', 'rate b y', 'rate b z']], light });
   const text = liveText();
+  // Once there is something to say about the sensors, it replaces the description of the sliders.
+  let reported = false;
+  const report = (words) => { reported = true; text.say(words); };
   open(el, stage(sheet, text),
     element('div', { class: 'controls' }, group('Sensors', 'row-of-controls', use, record, copy),
       ...sliders.map((slider) => slider.element), film.element),
@@ -130,15 +133,15 @@ export function render({ model, el }) {
       if (!kind?.requestPermission) continue;
       const answer = await kind.requestPermission().catch(() => 'denied');
       if (answer !== 'granted') {
-        text.say('Access to the sensors was refused. Reload the page to be asked again. Meanwhile, play the recording.');
+        report('Access to the sensors was refused. Reload the page to be asked again. Meanwhile, play the recording.');
         return;
       }
     }
     listen();
-    text.say('Waiting for the sensors ...');
+    report('Waiting for the sensors ...');
     setTimeout(() => {
       if (alive) return;
-      text.say(window.isSecureContext ? 'No sensor responds on this device: play the recording instead, or open this page on a phone.'
+      report(window.isSecureContext ? 'No sensor responds on this device: play the recording instead, or open this page on a phone.'
         : 'Browsers let only pages with a secure connection use the sensors: play the recording instead.');
     }, PATIENCE);
   }
@@ -185,10 +188,10 @@ export function render({ model, el }) {
   }
 
   function say() {
-    if (recording) { text.say(`Recording for ${RECORD_SECONDS} seconds: turn the phone.`); return; }
-    if (file) { text.say(`${rows.length} samples are stored on this page, and nowhere else.`); return; }
+    if (recording) { report(`Recording for ${RECORD_SECONDS} seconds: turn the phone.`); return; }
+    if (file) { report(`${rows.length} samples are stored on this page, and nowhere else.`); return; }
     if (alive) {
-      text.say(sensors.north === null ? 'The figure follows your phone. There is no compass, so $\\hat{n}_y$ is the direction it first pointed in.'
+      report(sensors.north === null ? 'The figure follows your phone. There is no compass, so $\\hat{n}_y$ is the direction it first pointed in.'
         : 'The figure follows your phone. $\\hat{n}_y$ is magnetic north.');
     }
   }
@@ -201,7 +204,7 @@ export function render({ model, el }) {
     felt.show([(sensors.force ?? scale(GRAVITY, transpose(dcm)[2])).map((entry) => fixed(entry, 2))]);
     turning.show([(sensors.rate ?? [0, 0, 0]).map((entry) => fixed(degrees(entry), 1))]);
     sheet.draw(() => picture(sheet, dcm));
-    if (!alive && /^(Body fixed|$)/.test(text.element.textContent)) {   // a message about the sensors stays
+    if (!reported) {
       text.say(`Body fixed z-x-y: $\\alpha$ = ${plainDegrees(angles[0], 0)}, $\\beta$ = ${plainDegrees(angles[1], 0)}, `
         + `$\\gamma$ = ${plainDegrees(angles[2], 0)}. The specific force and the angular velocity are those of a phone at rest.`);
     }

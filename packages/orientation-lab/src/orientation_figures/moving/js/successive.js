@@ -144,7 +144,7 @@ function sentence(end, kind, dcm, compare, otherDcm, lit, more) {
         axis.map((entry) => fixed(entry, 2).trim()).join(', ')}).`);
   }
   const apart = axisAngleFromDcm(multiply(otherDcm, transpose(dcm)))[1];
-  const what = compare === OTHER ? `The same turns, ${kind === 'body' ? 'space' : 'body'} fixed, lead` : `With turns ${compare.replace('exchanged', 'in the other order')} the chain leads`;
+  const what = compare === OTHER ? `The same turns, ${kind === 'body' ? 'space' : 'body'} fixed, lead` : `With turns ${compare}, the chain leads`;
   return apart < 1e-7 ? `${what} to the same orientation: here $E$ is where $${end}$ is.`
     : `${what} to $E$ instead of $${end}$. The two differ by a rotation of ${angleText(apart)}.`;
 }
