@@ -9,6 +9,7 @@ import shutil
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from docutils import nodes
 
@@ -59,7 +60,7 @@ def scripts_and_styles(kinds):
         texts |= {f"{kind}.js": bundle.script(kind) for kind in own}
         later |= {name: text for kind in own for name, text in bundle.beside(kind).items()}
     for kind in set(kinds) & set(bundle.BUILT):
-        script = built(bundle.BUILT[kind])
+        script = built(kind)
         # The name contains a hash, so that an older page never loads a newer script.
         name = f"{kind}-{sha256(script.encode()).hexdigest()[:8]}.js"
         later[name] = script
@@ -78,18 +79,15 @@ def figures_as_written(app):
     return Path(app.doctreedir) / "moving"
 
 
-def write(folder, texts):
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, text in texts.items():
-        (folder / name).write_text(text, "utf8")
-
-
 def add_scripts(app, pagename, templatename, context, doctree):
     kinds = kinds_on(doctree) if doctree is not None else []
     if not kinds:
         return
     texts, later = scripts_and_styles(kinds)
-    write(figures_as_written(app), texts | later)
+    folder = figures_as_written(app)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in (texts | later).items():
+        (folder / name).write_text(text, "utf8")
     address = context["pathto"]("_static/moving", 1)
     context["figure_scripts"] = [f"{address}/{name}" for name in texts if name.endswith(".js")]
     context["styles"] = [
@@ -125,9 +123,11 @@ def bring(app, exception):
 
 
 @cache
-def built(script):
-    """Bundle a script with all that it imports, including npm packages."""
-    return esbuild("--bundle", "--minify", "--format=iife", "--log-level=warning", script)
+def built(kind):
+    """Bundle the script of a figure with all that it imports, including npm packages."""
+    with TemporaryDirectory() as folder:
+        script = named(REGISTERED["figures"]).with_all_modules(kind, Path(folder))
+        return esbuild("--bundle", "--minify", "--format=iife", "--log-level=warning", script)
 
 
 def setup(app):

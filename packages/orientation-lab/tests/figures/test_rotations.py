@@ -259,7 +259,7 @@ def essay(tmp_path_factory):
     from orientation_figures.style import STYLE
 
     folder = tmp_path_factory.mktemp("essay")
-    (folder / "world.js").write_text(built(bundle.BUILT["rotations"]), "utf8")
+    (folder / "world.js").write_text(built("rotations"), "utf8")
     sections = "".join(
         f'<section id="{name}"><h2>{name}</h2><i data-stop="{name}"></i></section>'
         for name in STILLS

@@ -5,6 +5,7 @@ are made from the same files.
 """
 
 import re
+import shutil
 from functools import cache
 from pathlib import Path
 
@@ -31,7 +32,7 @@ OWN |= {
 }
 # Figures that use npm packages. This script is the source of what their page loads when they come
 # into view, and each has its own style sheet.
-BUILT = {"rotations": FOLDER.parent / "rotations" / "js" / "world.js"}
+BUILT = {"rotations": "world.js"}
 # This loads that script when the reader begins: with a movement of the pointer, a touch, a key or
 # scrolling, while the figure is in sight. Until then its still is shown, which takes no time to
 # draw. A figure begins at once if it plays by itself, if it is under the pointer, or if the page
@@ -145,6 +146,15 @@ def style():
     return (FOLDER / "moving.css").read_text("utf8")
 
 
+def with_all_modules(kind, folder):
+    """Write the modules for a figure of ``BUILT`` into a folder; return the file to bundle."""
+    for package in ("moving", kind):
+        shutil.copytree(FOLDER.parent / package / "js", folder / package / "js")
+    for name, path in DESCRIBED.items():
+        (folder / "moving" / "js" / f"{name}.js").write_text(translated(path), "utf8")
+    return folder / kind / "js" / BUILT[kind]
+
+
 def built_style(kind):
     """Return the style sheet of a figure of ``BUILT``."""
-    return (BUILT[kind].parent.parent / "essay.css").read_text("utf8")
+    return (FOLDER.parent / kind / "essay.css").read_text("utf8")
