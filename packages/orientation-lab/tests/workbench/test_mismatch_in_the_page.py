@@ -25,15 +25,17 @@ from orientation import quaternion_from_dcm, random_orientations, simple_dcm
 from orientation_figures.moving.workbench import EXAMPLES
 from orientation_workbench import explain
 from orientation_workbench.mismatch import mend, table
+from orientation_workbench.mismatch.text import _decimal_points
 
 SCRIPTS = (
     REPOSITORY / "packages" / "orientation-lab" / "src" / "orientation_figures" / "moving" / "js"
 )
 PROGRAM = """
 import { readFileSync } from 'node:fs';
-import { explain, formulaOf, mendingLine } from '%s';
+import { explain, formulaOf, mendingLine } from '%s/mismatch.js';
+import { decimalPoints } from '%s/mathematics.js';
 const { table, cases } = JSON.parse(readFileSync(0, 'utf8'));
-console.log(JSON.stringify(cases.map(({ first, second, declared, noise, programs }) => {
+const answerTo = ({ first, second, declared, noise, programs }) => {
   try {
     const found = explain(first, second, table, {
       firstDeclared: declared[0], secondDeclared: declared[1], noise,
@@ -46,15 +48,19 @@ console.log(JSON.stringify(cases.map(({ first, second, declared, noise, programs
       mended: (found.verdict === 'named' || found.names?.length) && !found.chains[0].relation.inside
         ? [mendingLine, formulaOf].map((write) => write(found.chains[0])) : [] };
   } catch (error) { return { error: error.message }; }
-})));
+};
+console.log(JSON.stringify(cases.map((asked) => ({
+  ...answerTo(asked), points: decimalPoints(asked.first) }))));
 """
 
 
 def in_the_page(cases):
-    program = PROGRAM % (SCRIPTS / "mismatch.js").as_uri()
     given = json.dumps({"table": table.whole_table(), "cases": cases})
     done = subprocess.run(
-        [NODE, "--input-type=module", "-e", program], input=given, capture_output=True, text=True
+        [NODE, "--input-type=module", "-e", PROGRAM.replace("%s", SCRIPTS.as_uri())],
+        input=given,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stderr[-2000:]
     return json.loads(done.stdout)
@@ -73,8 +79,9 @@ def in_python(case):
             second_program=case["programs"][1],
         )
     except ValueError as error:
-        return {"error": str(error)}
+        return {"error": str(error), "points": _decimal_points(case["first"])}
     return {
+        "points": _decimal_points(case["first"]),
         "verdict": explanation.verdict,
         "faults": list(explanation.faults),
         "left": len(explanation.chains),
@@ -126,6 +133,21 @@ TABLES = (
 )
 
 
+#: Commas between digits: those that become points, and those that separate.
+COMMAS = {
+    "0,9239 0 0 0,3827": "0.9239 0 0 0.3827",
+    "0,9239; 0; 0; 0,3827": "0.9239; 0; 0; 0.3827",
+    "0,9239\n0\n0\n0,3827": "0.9239\n0\n0\n0.3827",
+    "angle 1 = 30,5\nangle 2 = 20,1": "angle 1 = 30.5\nangle 2 = 20.1",
+    "3 3\n0,6 0,8 0\n-0,8 0,6 0\n0 0 1": "3 3\n0.6 0.8 0\n-0.8 0.6 0\n0 0 1",
+    "1,2 3,4 5,6": "1.2 3.4 5.6",
+} | {
+    text: text
+    for text in ("1,0,0,0", "1,0, 0,0", "[1,2 3,4]", "[1,0, 0\n 0,1, 0\n 0,0, 1]", "0,5 0 0",
+                 "0.5,0.5,0.5,0.5", "0,0,1 1,57", "1.5 2,5 3,5")
+}  # fmt: skip
+
+
 def special():
     dcm, poses = (
         np.array(random_orientations(1, np.random.default_rng(2))[0]),
@@ -141,7 +163,7 @@ def special():
         yield case(pasted["first"], pasted["second"], pasted["known"])
     for first, second, *_ in EXAMPLES.values():
         yield case(first, second)
-    for text in SPELLED.values():
+    for text in (*SPELLED.values(), *TABLES):
         yield case(text, printed([dcm], 6))
     for first, second in itertools.product(
         ("ROS tf2 (C++)", "Unity", "COLMAP", "nerfstudio"), ("PX4", "Unreal", "COLMAP")
@@ -151,8 +173,6 @@ def special():
         )
     for text, _ in BAD.values():
         yield case(text, "1 0 0 0")
-    for text in TABLES:
-        yield case(text, printed([dcm]))
     yield case(printed([simple_dcm("z", 0.5)]), printed([simple_dcm("z", -0.5)]))
     yield case("1 0 0 0", "1 0 0 0")
     yield case(printed(poses[:3]), printed(constants[0] @ poses[:3]))
@@ -177,7 +197,9 @@ def test_both_say_the_same():
         *itertools.islice(special(), 0, None, 2),
         *itertools.islice(angles_that_fit_in_many_ways(), 0, None, 4),
         *mixtures(12, seed=8),
+        *(case(text, "") for text in COMMAS),
     ]
+    assert [*map(_decimal_points, COMMAS)] == [*COMMAS.values()]
     for asked, answer in zip(cases, in_the_page(cases)):
         wanted = in_python(asked)
         if "residual" in wanted and wanted["residual"] is not None:
@@ -241,13 +263,5 @@ def test_every_example_of_the_page_shows_what_it_is_there_for():
     for first, second, *sides in EXAMPLES.values():
         known = [dict(side) for side in sides] or [{}, {}]
         programs = [side.pop("program", None) for side in known]
-        explanation = explain(
-            first,
-            second,
-            first_program=programs[0],
-            second_program=programs[1],
-            first_declared=known[0],
-            second_declared=known[1],
-        )
-        verdicts.append(explanation.verdict)
+        verdicts.append(in_python(case(first, second, known, programs=programs))["verdict"])
     assert verdicts == ["named"] * 7 + ["undecided", "unrelated"]

@@ -83,11 +83,10 @@ def read_poses(given, name: str, kind: str | None = None, noise: float = 0.0) ->
         raise ValueError(
             f"{kind!r} is not a kind of description: choose one of {', '.join(COUNTS)}"
         )
-    declared = {}
     if isinstance(given, str):
         rows, half, declared = _rows_of_text(given, name)
     else:
-        rows, half = _rows_of_array(given, name), 0.0
+        rows, half, declared = _rows_of_array(given, name), 0.0, {}
     numbers = _poses(rows, name, kind, half)
     if not np.isfinite(numbers).all():
         raise ValueError(f"the {name} side contains a number that is not finite")
@@ -123,14 +122,12 @@ def _rows_of_text(text, name):
     if NUMBER.search(bare):
         text = bare
     text = _without_places(_decimal_points(text))
-    if match := _PATTERNS["not a number"].search(text):
-        raise ValueError(
-            f"the {name} side contains '{match.group().strip()}', which is not a number"
-        )
-    if match := _PATTERNS["arithmetic"].search(text):
-        raise ValueError(
-            f"the {name} side contains '{match.group().strip()}': work it out and paste the result"
-        )
+    for which, words in (
+        ("not a number", ", which is not a number"),
+        ("arithmetic", ": work it out and paste the result"),
+    ):
+        if match := _PATTERNS[which].search(text):
+            raise ValueError(f"the {name} side contains '{match.group().strip()}'{words}")
     text = _sums(text)
     if not NUMBER.search(text):
         shown = " ".join(text.split())[:40]
@@ -204,10 +201,9 @@ def _columns(text):
         which, more = columns
         kept = [[row[column] for column in which] for row in table]
         if all(_PATTERNS["whole number"].search(field) for row in kept for field in row):
-            half = _half([field for row in kept for field in row])
             return (
                 [list(map(float, row)) for row in kept],
-                half,
+                _half([field for row in kept for field in row]),
                 more | _unit_in(line.replace("_", " ")),
             )
     return None
@@ -255,15 +251,18 @@ def _rows_of_lines(text):
 def _decimal_points(text):
     """Replace decimal commas by points if two or more numbers have one and none a point.
 
-    >>> _decimal_points("0,7071; 0; 0,7071; 0"), _decimal_points("1,0,0,0")
-    ('0.7071; 0; 0.7071; 0', '1,0,0,0')
+    A pose has at least three numbers, so if a line would keep just two, its commas separate.
+
+    >>> _decimal_points("0,9239 0 0 0,3827"), _decimal_points("1,0, 0,0")
+    ('0.9239 0 0 0.3827', '1,0, 0,0')
     """
-    groups = re.findall(r"\d[\d,]*\d|\d", text)
-    with_comma = [group for group in groups if "," in group]
+    with_comma = re.findall(r"\d+(?:,\d+)+", text)
+    pair = r"(?=.*\d,\d)[^A-Za-z\d]*\d[\d,]*\s[\s,]*[-+]?\d[\d,]*[^A-Za-z\d]*"
     if (
         re.search(r"\d\.|\.\d", text)
         or len(with_comma) < 2
-        or any(group.count(",") > 1 for group in with_comma)
+        or any(number.count(",") > 1 for number in with_comma)
+        or any(re.fullmatch(pair, line) for line in text.split("\n"))
     ):
         return text
     return re.sub(r"(?<=\d),(?=\d)", ".", text)
@@ -427,8 +426,9 @@ def _kinds(numbers, kind, doubt, name):
             )
         kinds = (kind,)
     elif count == 4:
-        unit = _all_unit(numbers, doubt + NORMALISED / 2)
-        kinds = ("quaternion",) if unit else ("axis and angle",)
+        kinds = (
+            ("quaternion",) if _all_unit(numbers, doubt + NORMALISED / 2) else ("axis and angle",)
+        )
     else:
         kinds = ("matrix",) if count == 9 else ("Euler angles", "rotation vector")
     if kinds == ("matrix",):
@@ -436,14 +436,15 @@ def _kinds(numbers, kind, doubt, name):
     elif kinds == ("quaternion",) and not _all_unit(numbers, max(doubt, 0.01)):
         worst = max(np.linalg.norm(numbers, axis=1), key=lambda size: abs(size - 1))
         raise ValueError(f"a quaternion on the {name} side has length {worst:.6g}, not 1")
-    elif kinds == ("axis and angle",):
-        if not any(_all_unit(axes, doubt) for axes in (numbers[:, :3], numbers[:, 1:])):
-            size = np.linalg.norm(numbers[0])
-            raise ValueError(
-                f"the four numbers on the {name} side are neither a quaternion (their length is "
-                f"{size:.6g}, not 1) nor an axis and its angle (neither the first three nor the "
-                "last three have length 1)"
-            )
+    elif kinds == ("axis and angle",) and not any(
+        _all_unit(axes, doubt) for axes in (numbers[:, :3], numbers[:, 1:])
+    ):
+        size = np.linalg.norm(numbers[0])
+        raise ValueError(
+            f"the four numbers on the {name} side are neither a quaternion (their length is "
+            f"{size:.6g}, not 1) nor an axis and its angle (neither the first three nor the "
+            "last three have length 1)"
+        )
     return kinds
 
 

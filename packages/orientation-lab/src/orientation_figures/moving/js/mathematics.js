@@ -196,9 +196,9 @@ export function quaternionAt(angle, passed, part) {
   return [Math.cos(half), 0, Math.cos(tilt) * Math.sin(half), Math.sin(tilt) * Math.sin(half)];
 }
 
-// Replace decimal commas by points if three or more numbers have one and none a point.
+// Replace decimal commas by points, as `_decimal_points` of mismatch/text.py does.
 export function decimalPoints(text) {
-  const groups = (text.match(/\d[\d,]*\d|\d/g) ?? []).filter((group) => group.includes(','));
-  if (/\d\.|\.\d/.test(text) || groups.length < 3 || groups.some((group) => group.split(',').length > 2)) return text;
+  const numbers = text.match(/\d+(?:,\d+)+/g) ?? [], pair = /^(?=.*\d,\d)[^A-Za-z\d]*\d[\d,]*\s[\s,]*[-+]?\d[\d,]*[^A-Za-z\d]*$/;
+  if (/\d\.|\.\d/.test(text) || numbers.length < 2 || numbers.some((number) => number.split(',').length > 2) || text.split('\n').some((line) => pair.test(line))) return text;
   return text.replace(/(?<=\d),(?=\d)/g, '.');
 }
