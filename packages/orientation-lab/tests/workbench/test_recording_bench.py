@@ -450,10 +450,14 @@ def test_folders_and_zips_in_them_are_opened_and_a_broken_table_is_told(tmp_path
         content = read_content(source)
         assert set(content.groups) == {"gyroscope", "accelerometer"}
         assert "line 10, column 2" in " ".join(content.remarks) and len(content.remarks) == 1
-    # Two walks with the same columns.
-    gyroscope = read_content(tmp_path / "deep").groups["gyroscope"].names
+    # Two walks with the same columns, and the instruments of the book.
     (tmp_path / "deep" / "later.zip").write_bytes((tmp_path / "deep" / "walk.zip").read_bytes())
-    assert f"{', '.join(gyroscope)} of gyroscope" in read_content(tmp_path / "deep").unused
+    for folder, files in (
+        (tmp_path / "deep", "gyroscope: later.zip/today/gyroscope.csv, walk.zip/today/gyroscope"),
+        (DATA, "accelerometer: lower_leg.csv, ngimu_sensors.csv, upper_leg.csv"),
+    ):
+        with pytest.raises(RecordingError, match=f"several recordings.* its own {files}"):
+            read_content(folder)
     with pytest.raises(RecordingError, match="no table of numbers; .*ulog2csv"):
         (tmp_path / "only").mkdir()
         (tmp_path / "only" / "flight.log").write_bytes(b"ULog\1\2")

@@ -50,10 +50,7 @@ def run(chosen: Namespace) -> int:
         )
         if shown:
             print(f"\r{'':45}\r", end="", file=sys.stderr)
-        if chosen.json:
-            print(json.dumps(as_data(examined), indent=2, default=str))
-        else:
-            print(examined)
+        print(json.dumps(as_data(examined), indent=2, default=str) if chosen.json else examined)
         if chosen.html:
             chosen.html.write_text(as_html(examined), "utf8")
         if chosen.csv:

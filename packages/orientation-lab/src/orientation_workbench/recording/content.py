@@ -110,8 +110,7 @@ class Group(NamedTuple):
     time : array of shape ``(n,)``
     values : array of shape ``(n, 1)``, ``(n, 3)`` or ``(n, 4)``
     clock : Clock
-    table : str
-        The name of the table, after the word "of", if there are several.
+    table : Table
     """
 
     kind: str
@@ -119,7 +118,7 @@ class Group(NamedTuple):
     time: Array
     values: Array
     clock: Clock
-    table: str
+    table: Table
 
 
 class Content(NamedTuple):
@@ -168,7 +167,8 @@ def read_content(
     Raises
     ------
     RecordingError
-        If the file cannot be read, or no column has the name of a sensor.
+        If the file cannot be read, no column has the name of a sensor, or several files have the
+        same sensor.
     """
     if rate is not None and not 0 < rate < np.inf:
         raise RecordingError(
@@ -178,19 +178,20 @@ def read_content(
     groups: list[Group] = []
     unused: list[str] = []
     remarks: list[str] = []
+    several = len(tables) > 1
     for table in tables:
-        of_table = f" of {table.name}" * (len(tables) > 1)
-        remarks += [remark + of_table for remark in table.remarks]
-        of_this_table, left = _groups(table, of_table)
+        remarks += [remark + f" of {table.name}" * several for remark in table.remarks]
+        of_this_table, left = _groups(table)
         groups += of_this_table
         unused += left
+    _refuse_several(groups)
     chosen, more = _chosen(groups)
     remarks += more
     sensors = [chosen[kind] for kind in SENSORS if kind in chosen]
     if not sensors:
         raise RecordingError(_question(tables[0], bool({"quaternion", "angles"} & chosen.keys())))
     unused += [
-        ", ".join(group.names) + group.table
+        ", ".join(group.names) + f" of {group.table.name}" * several
         for group in groups
         if not any(group.time is each.time for each in chosen.values())
     ]
@@ -405,7 +406,7 @@ def _kind(stem: str, heading: str, table: str) -> str:
     return (kinds or [""])[0]
 
 
-def _groups(table: Table, of_table: str) -> tuple[list[Group], list[str]]:
+def _groups(table: Table) -> tuple[list[Group], list[str]]:
     """Return the columns that belong together, and the headings of the others."""
     clock = _clock(table)
     groups: list[Group] = []
@@ -417,7 +418,7 @@ def _groups(table: Table, of_table: str) -> tuple[list[Group], list[str]]:
         rows &= kind != "quaternion" or table.values[:, columns].any(axis=1)
         if rows.sum() > 8:
             names, values = [table.columns[k] for k in columns], table.values[rows][:, columns]
-            groups.append(Group(kind, names, clock.time[rows], values, clock, of_table))
+            groups.append(Group(kind, names, clock.time[rows], values, clock, table))
             taken.update(columns)
 
     stems: dict[str, dict[str, int]] = {}
@@ -462,6 +463,24 @@ def _groups(table: Table, of_table: str) -> tuple[list[Group], list[str]]:
             unused[last] += f" (if these are angles, name them: --columns '{said}')"
             break
     return groups, unused
+
+
+def _refuse_several(groups: Sequence[Group]) -> None:
+    """Refuse the files of several recordings, which have the same sensor in more than one file."""
+    # Without the sensor's name in the headings, tables with different names may be of one
+    # recording: phones write a sensor's raw values, too.
+    sensors = [
+        (group.kind, not _stem_and_axis(group.names[0])[0] and group.table.name, group.table.file)
+        for group in groups
+        if group.kind in SENSORS
+    ]
+    for sensor in sensors:
+        if len(files := {other[2] for other in sensors if other[:2] == sensor[:2]}) > 1:
+            raise RecordingError(
+                f"these files are several recordings, since each has its own {sensor[0]}: "
+                f"{', '.join(sorted(files))}. Give one of them (unpack an archive first), or only "
+                "the files of one recording"
+            )
 
 
 def _chosen(groups: Sequence[Group]) -> tuple[dict[str, Group], list[str]]:

@@ -41,24 +41,20 @@ class Judged:
         if self.examined is None:
             return f"<p>{escape(self.words)}</p>"
         fragment = as_fragment(self.examined)
-        links = [
-            _link(
-                "report.html",
-                "text/html",
-                as_html(self.examined, fragment),
-                "Save this report as one page",
-            )
-        ]
+        links = _link(
+            "report.html",
+            "text/html",
+            as_html(self.examined, fragment),
+            "Save this report as one page",
+        )
         if len(self.examined.time) <= LONGEST:
-            links.append(
-                _link(
-                    "corrected.csv",
-                    "text/csv",
-                    as_csv(self.examined, self.convention),
-                    f"Save the corrected recording ({self.convention})",
-                )
+            links += " · " + _link(
+                "corrected.csv",
+                "text/csv",
+                as_csv(self.examined, self.convention),
+                f"Save the corrected recording ({self.convention})",
             )
-        return f"<p>{' · '.join(links)}</p>{fragment}"
+        return f"<p>{links}</p>{fragment}"
 
 
 def _link(name: str, kind: str, text: str, words: str) -> str:

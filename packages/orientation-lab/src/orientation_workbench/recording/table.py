@@ -85,6 +85,8 @@ class Table(NamedTuple):
         What did not fit, with lines and columns.
     head : str
         The text above the numbers.
+    file : str
+        Of several files, the one that contains the table.
     """
 
     name: str
@@ -92,6 +94,7 @@ class Table(NamedTuple):
     values: Array
     remarks: list[str]
     head: str = ""
+    file: str = ""
 
 
 def number_of(count: int, noun: str) -> str:
@@ -200,7 +203,7 @@ def _unpacked(content: bytes, name: str) -> list[Table]:
                 raise RecordingError(f"{name} is {EXCEL}")
             return _from_several(
                 [
-                    (Path(file).name, partial(archive.read, file))
+                    (file, partial(archive.read, file))
                     for file in names
                     if Path(file).suffix.lower() in TEXTS
                 ],
@@ -234,8 +237,11 @@ def _from_several(files: Iterable[tuple[str, Callable[[], bytes]]], name: str) -
     reasons: list[str] = []
     for file, read in files:
         try:
-            tables += _from_bytes(
-                read(), file if Path(file).suffix in (".gz", ".zip") else Path(file).stem
+            tables += (
+                table._replace(file=f"{file}/{table.file}" if table.file else file)
+                for table in _from_bytes(
+                    read(), file if Path(file).suffix in (".gz", ".zip") else Path(file).stem
+                )
             )
         except BrokenTable as error:
             broken.append(str(error))
