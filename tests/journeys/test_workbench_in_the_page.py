@@ -50,6 +50,11 @@ def test_a_mistake_is_told_and_a_click_answers_the_question_of_a_shared_order(pa
     answer(page).get_by_text("They differ, and this is how:").wait_for()
     reply = answer(page).inner_text().lower()
     assert "y and z of the body reversed" in reply and "world" not in reply
+    # On paper, they stand instead of the built-in example.
+    page.emulate_media(media="print")
+    seen = [page.locator(own).is_visible() for own in (".answer", ".side >> nth=1", ".still")]
+    assert seen == [True, True, False]
+    page.emulate_media(media="screen")
     # For other numbers, the earlier answer does not apply.
     paste(page, FLU, FLU.replace("0.301", "0.302"))
     paste(page, FLU, FRD)
