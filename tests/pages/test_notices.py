@@ -25,8 +25,7 @@ def owners():
                 files[path.stat().st_size].append(
                     (path, package.relative_to(NODE_MODULES).as_posix())
                 )
-    root = Path(sysconfig.get_path("purelib"))
-    for distribution in metadata.distributions(path=[str(root)]):
+    for distribution in metadata.distributions(path=[sysconfig.get_path("purelib")]):
         for file in distribution.files or ():
             path = Path(str(distribution.locate_file(file)))
             if path.suffix in SERVED and path.is_file():
@@ -71,7 +70,6 @@ def test_every_file_that_is_served_as_others_made_it_is_covered():
 
 def test_each_page_leads_to_the_licences():
     front = BeautifulSoup((HTML / "index.html").read_text("utf8"), "lxml")
-    chapter = next((HTML / "chapters").glob("*.html"))
-    inner = BeautifulSoup(chapter.read_text("utf8"), "lxml")
+    inner = BeautifulSoup(next((HTML / "chapters").glob("*.html")).read_text("utf8"), "lxml")
     assert front.select_one('.colophon a[href="licences.html"]')
     assert inner.select_one('.colophon a[href="../licences.html"]')

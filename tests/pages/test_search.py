@@ -139,8 +139,7 @@ def test_conversions_are_found_by_where_they_lead(places_found):
     ]
     typed = [f"{spoken[source]} to {spoken[target]}" for target, source in pairs]
     typed += [f"how do I get {spoken[target]} from a {spoken[source]}?" for target, source in pairs]
-    results = places_found(typed)
-    for (target, source), places in zip(pairs * 2, results, strict=True):
+    for (target, source), places in zip(pairs * 2, places_found(typed), strict=True):
         functions = [
             place.partition("#orientation.")[2] for place in places if "#orientation." in place
         ]
@@ -176,8 +175,7 @@ def test_names_slips_and_words_of_programs_are_understood(places_found):
         "rotation between two ve": "chapters/axis-and-angle#from-one-direction-to-another",
         "slerp() takes the long way": "chapters/quaternions-in-full#half-way",  # no formula
     }
-    results = places_found(list(leads_to))
-    for (typed, place), places in zip(leads_to.items(), results, strict=True):
+    for (typed, place), places in zip(leads_to.items(), places_found(list(leads_to)), strict=True):
         assert place is None or place in places[:3], typed
 
 

@@ -189,9 +189,11 @@ def test_students_have_the_command_that_updates_and_no_other(
     )
     assert re.findall(r"^    (\w\S*)", help_run.stdout, re.M) == ["update"]
     assert "install coursework-tools" in help_run.stdout
-    archive = FOLDER / "exercises.zip"
     done = subprocess.run(
-        [*command, "update", archive], cwd=tmp_path, env=readers_variables, capture_output=True
+        [*command, "update", FOLDER / "exercises.zip"],
+        cwd=tmp_path,
+        env=readers_variables,
+        capture_output=True,
     )
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "euler-angles.ipynb").is_file()

@@ -188,8 +188,11 @@ def test_every_chapter_is_whole_and_listed_with_its_page(places, texts, chapter_
             "figcaption .caption-number, table caption .caption-number"
         ):
             assert plain(caption.get_text(strip=True)) in text, name
-        paragraphs = article(name).find_all("p")
-        simple = [p for p in paragraphs if not p.find(["code", "span", "a", "math"])]
+        simple = [
+            paragraph
+            for paragraph in article(name).find_all("p")
+            if not paragraph.find(["code", "span", "a", "math"])
+        ]
         assert simple or name.startswith(("appendix/reference", "exercises/")), name
         for paragraph in simple:
             words = plain(paragraph.get_text()).strip()

@@ -354,8 +354,7 @@
     scrollTo({ top: place, behavior: "instant" });
     button.focus({ preventScroll: true });
   };
-  const toggle = () => (root.classList.contains("lecture") ? end() : begin());
-  button.addEventListener("click", toggle);
+  button.addEventListener("click", () => (root.classList.contains("lecture") ? end() : begin()));
 
   // ---- keys, clicks and touches ----
   const TYPING = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable], .cm-editor";

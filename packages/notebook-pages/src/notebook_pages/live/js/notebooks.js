@@ -81,8 +81,7 @@ export function bookCells(notebook) {
     }));
   }
   // Notebooks from elsewhere have no stamp: the names that graders use identify their cells.
-  const graded = (cell) => cell.metadata?.nbgrader?.grade_id;
-  const names = nameCells(codes.map((cell) => ({ name: graded(cell), original: text(cell.source) })));
+  const names = nameCells(codes.map((cell) => ({ name: cell.metadata?.nbgrader?.grade_id, original: text(cell.source) })));
   return codes.map((cell, k) => ({ cell, name: names[k], text: text(cell.source), original: null }));
 }
 

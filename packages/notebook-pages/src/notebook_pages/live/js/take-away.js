@@ -99,8 +99,13 @@ export async function load(data, originals) {
   });
   if (!kept) return "This browser has no room for everything in the notebook, or stores nothing, so not all of it was loaded.";
   const more = codes.length - originals.length;
+  // Without its name, a changed cell may be anywhere in the file.
+  const texts = new Set(found.values());
+  const lost = names.filter((name, k) => data.cells[k]?.name && !found.has(name) && !texts.has(originals[k])).length;
+  const byHand = lost ? ` We cannot tell what the file has for ${count(lost, "cell")} of this page: copy ${lost === 1 ? "it" : "them"} by hand.` : "";
   const own = more > 0 ? ` ${count(more, "cell")} of yours that the page does not have ${more === 1 ? "stays" : "stay"} in the file.` : "";
-  return `${changed ? `${count(changed, "cell")} changed: the earlier content is kept below each cell.` : "Nothing differs."}${own}`;
+  const done = changed ? `${count(changed, "cell")} changed: the earlier content is kept below each cell.` : lost ? "Nothing was loaded." : "Nothing differs.";
+  return `${done}${byHand}${own}`;
 }
 
 // --- all answers of the book ----------------------------------------------------------------------

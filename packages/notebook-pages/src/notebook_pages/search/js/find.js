@@ -125,8 +125,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   };
   for (const [id, { kind, number, title, about, asked = [] }] of entries.entries()) {
     add(id, title, {});
-    const called = kind === "page" ? "chapter" : kind;
-    if (number) add(id, /^[A-Z]/.test(number) ? number : `${called} ${number}`, { alone: true });
+    if (number) add(id, /^[A-Z]/.test(number) ? number : `${kind === "page" ? "chapter" : kind} ${number}`, { alone: true });
     for (const phrase of asked) add(id, phrase, {});
     if (about) add(id, about, { within: "about" });
     if (more.words?.[id]) add(id, more.words[id], { within: "text" });
