@@ -15,13 +15,13 @@ import urllib.parse
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from ..checking.mistakes import GENERAL
 from ..checking.reply import mathml, to_html
 from .author import to_page
 from .packing import zipped
+from .pages import ENVIRONMENT
 
 #: A picture within a page, as authors' figures are stored.
 EMBEDDED = re.compile(r'(?<=src=")data:image/(svg|png|jpe?g|gif)[^,"]*?(;base64)?,([^"]+)')
@@ -35,17 +35,6 @@ SPECIAL = {ord(sign): f"&#{ord(sign)};" for sign in "{}~#=%"}
 MOST_REPLIES = 2
 #: Moodle compares one entry at a time, but a reply is to a whole answer.
 PERHAPS = Markup("<p>If your other entries show the same mistake:</p>")
-ENVIRONMENT = Environment(
-    loader=PackageLoader("coursework.authoring", "templates"),
-    autoescape=True,
-    undefined=StrictUndefined,
-    trim_blocks=True,
-    lstrip_blocks=True,
-)
-ENVIRONMENT.filters |= {
-    "base64": lambda data: base64.b64encode(data).decode("ascii"),
-    "message": lambda reply: Markup(to_html(reply, mathml)),
-}
 
 
 class Wrong(NamedTuple):

@@ -6,7 +6,6 @@ if they are few, and its faults, if any.
 
 import base64
 import contextlib
-import html
 import io
 import json
 import random
@@ -18,6 +17,7 @@ from pathlib import Path
 from typing import NamedTuple, TypedDict
 
 import sympy
+from markupsafe import Markup
 
 from ..checking.catalogue import message
 from ..checking.kinds import Fault, Undecidable, number_of
@@ -25,11 +25,12 @@ from ..checking.mistakes import GENERAL
 from ..checking.plain import NotPlain
 from ..checking.plugins import kinds
 from ..checking.questions import judge, notebook_questions
-from ..checking.reply import Reply, to_html
+from ..checking.reply import Reply
 from .author import AuthoredQuestion, AuthorError
 from .closed import possible_answers
 from .course import Course
 from .forms import another_answer, equivalent_forms
+from .pages import ENVIRONMENT
 from .source import (
     CHAPTERS,
     HIDDEN,
@@ -43,38 +44,6 @@ from .source import (
 
 #: The most equivalent forms in which to test a right answer.
 FORMS = 6
-COLUMNS = (
-    "Question",
-    "Kind",
-    "Forms that pass",
-    "Mistakes named",
-    "Mistakes that do not change the answer",
-    "Possible answers",
-    "Faults",
-)
-#: On a narrow screen, each question stands alone and each cell has a label.
-STYLE = """
-:root{color-scheme:light dark}
-body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem;
-overflow-wrap:break-word}
-section{border-top:1px solid #8888;margin-top:2rem}
-img{background:#fff;height:auto;max-width:100%}
-pre,math[display=block]{overflow-x:auto}
-table{border-collapse:collapse;width:100%}
-th,td{border-bottom:1px solid #8888;padding:.4rem;text-align:left;vertical-align:top}
-td ul{margin:0;padding-left:1.2em}
-@media (max-width:60rem){
-thead{display:none}
-tr,th,td{display:block}
-th,td{border:0;padding:.2rem 0}
-tr{border-bottom:1px solid #8888;padding:.6rem 0}
-td::before{content:attr(data-of) ": ";font-weight:600}
-td details{display:inline-block;max-width:100%;vertical-align:top}
-}
-"""
-NO_LEAK = (
-    "<p>None: no line of a solution, hint, hidden test or answer is in the released files.</p>"
-)
 
 
 class Finding(NamedTuple):
@@ -89,6 +58,11 @@ class Finding(NamedTuple):
     possible: int | None
     worth: float
     faults: list[str]
+
+    @property
+    def replies(self) -> Counter[tuple[str, str]]:
+        """How often each mistake gets each reply, since several of them may get the same."""
+        return Counter(self.mistakes)
 
 
 #: Descriptions of what no student may receive, by its text without spaces.
@@ -436,55 +410,11 @@ def _try_notebook(path: Path, course: Course) -> tuple[list[Finding], Secrets]:
 
 def write_page(
     findings: Sequence[Finding],
-    leaked: Sequence[Leak] | None,
-    before: str = "",
+    leaked: Sequence[Leak] | None = None,
+    questions: Sequence[tuple[AuthoredQuestion, Markup]] = (),
+    variants: Sequence[tuple[AuthoredQuestion, Markup]] = (),
 ) -> str:
-    rows = []
-    for finding in findings:
-        said_of = Counter((note, to_html(said)) for note, said in finding.mistakes)
-        mistakes = "".join(
-            f"<li><b>{html.escape(note)}</b>: "
-            f"{said}{f' ({times} of these)' if times > 1 else ''}</li>"
-            for (note, said), times in said_of.items()
-        )
-        faults = "".join(f"<li>{html.escape(fault)}</li>" for fault in finding.faults)
-        cells = (
-            html.escape(finding.kind),
-            _folded(len(finding.forms), html.escape(", ".join(finding.forms))),
-            _folded(len(finding.mistakes), f"<ul>{mistakes}</ul>"),
-            html.escape(", ".join(dict.fromkeys(finding.unmoved))) or "none",
-            f"{finding.possible:,}" if finding.possible else "not counted",
-            f"<ul>{faults}</ul>" if faults else "ready",
-        )
-        rows.append(
-            f'<tr><th scope="row">{html.escape(finding.name)}</th>'
-            + "".join(
-                f'<td data-of="{head}">{cell}</td>'
-                for head, cell in zip(COLUMNS[1:], cells, strict=True)
-            )
-            + "</tr>"
-        )
-    listed = "".join(
-        f"<li>{html.escape(what)} is in {html.escape(place)}</li>" for what, place in leaked or []
+    """Return the page, with the texts of ``questions`` and of all ``variants`` of one, if given."""
+    return ENVIRONMENT.get_template("selftest.html").render(
+        findings=findings, leaked=leaked, questions=questions, variants=variants
     )
-    # A test of a few questions does not look for leaks.
-    leaks_found = f"<h2>Leaks</h2>{f'<ul>{listed}</ul>' if listed else NO_LEAK}"
-    return (
-        '<!doctype html><html lang="en"><meta charset="utf-8">'
-        "<title>Self-test of the exercises</title>"
-        '<meta name="viewport" content="width=device-width, '
-        f'initial-scale=1"><style>{STYLE}</style>'
-        f"<h1>Self-test of the exercises</h1><p>{number_of(len(findings), 'question')}; "
-        f"{sum(bool(f.faults) for f in findings)} with "
-        f"faults. {number_of(sum(len(f.mistakes) for f in findings), 'mistake')} recognised.</p>"
-        "<p>The second-to-last column counts the possible answers where an answer is a few words, "
-        "an ordering or small whole numbers, since a program can try them all. A program that "
-        "builds formulas can find more.</p>"
-        f"{before}{'' if leaked is None else leaks_found}<h2>Questions</h2><table><thead><tr>"
-        + "".join(f'<th scope="col">{head}</th>' for head in COLUMNS)
-        + f"</tr></thead><tbody>{''.join(rows)}</tbody></table></html>"
-    )
-
-
-def _folded(summary: int, inside: str) -> str:
-    return f"<details><summary>{summary}</summary>{inside}</details>" if summary else "none"
