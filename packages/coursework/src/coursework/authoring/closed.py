@@ -6,19 +6,15 @@ it. We count only those, which understates what a script can do: most answers ar
 script that knows the subject's formulas finds many of those, too.
 """
 
-import contextlib
-import io
 import math
-from collections.abc import Collection
-from pathlib import Path
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from ..checking.kinds import Undecidable
 from ..checking.plugins import kinds, plugins
 from ..checking.reading import canonical, read
 from .author import AuthoredQuestion
-from .course import Course
-from .source import CHAPTERS, notebooks_in, processes_for, read_source
+from .source import CHAPTERS, Source
 
 #: Answers with more possibilities than this are not closed, since trying them takes more than a
 #: quarter of an hour.
@@ -76,10 +72,8 @@ def _whole_numbers(question: AuthoredQuestion) -> int | None:
     return int((2 * max(1, *(abs(round(entry)) for entry in entries)) + 1) ** len(entries))
 
 
-def _asked_in(path: Path, course: Course) -> dict[str, Asked]:
-    # Only the author needs what a solution prints.
-    with contextlib.redirect_stdout(io.StringIO()):
-        source = read_source(path, edition=course.edition)
+def asked_in(source: Source) -> dict[str, Asked]:
+    """Return what is to be counted of each question of a notebook."""
     return {
         name: Asked(
             question.worth,
@@ -101,8 +95,8 @@ def _alike(question: AuthoredQuestion) -> list[tuple[str, ...]]:
     return [texts for texts in replies if len(texts) > 1]
 
 
-def counted(course: Course, only: Collection[str] = ()) -> list[str]:
-    """Report the points that a script can find in some notebooks, and those that a copy earns.
+def counted(asked: Mapping[str, Asked]) -> list[str]:
+    """Report the points that a script can find, and those that a copy earns.
 
     Returns
     -------
@@ -111,10 +105,6 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
         mistakes that give the same answer, the points behind closed answers, and the points with
         one answer for everybody, with the reasons.
     """
-    paths = notebooks_in(course.sources, only)
-    with processes_for(paths) as pool:
-        by_notebook = list(pool.map(_asked_in, paths, [course] * len(paths)))
-    asked = {name: question for some in by_notebook for name, question in some.items()}
     exercises = {
         name: question for name, question in asked.items() if name.partition("/")[0] != CHAPTERS
     }

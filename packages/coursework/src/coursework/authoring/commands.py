@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shlex
 import sys
 from collections.abc import Callable, Sequence
@@ -128,15 +127,17 @@ def new(course: str) -> None:
 
 
 def release(only: Sequence[str], sources: Path | None) -> None:
+    from ..checking.kinds import number_of
     from .closed import counted
     from .packing import archive
     from .release import release as make
 
     course = _course(sources)
-    names = make(course, only)
-    print(f"{len(names)} {'notebook' if len(names) == 1 else 'notebooks'} released.")
+    made = make(course, only)
+    print(f"{number_of(len(made), 'notebook')} released.")
     print(f"For students: {archive(course)}")
-    print(*counted(course, names), sep="\n")
+    asked = {name: question for notebook in made for name, question in notebook.asked.items()}
+    print(*counted(asked), sep="\n")
 
 
 def publish(site: Path | None) -> None:
@@ -155,21 +156,11 @@ def wheels(folder: Path) -> None:
     print(*(wheel(name, folder) for name in DISTRIBUTIONS), sep="\n")
 
 
-def _writable(page: str | Path) -> str | Path:
-    """Return the path of a page if it can be written, so that an error comes before the work."""
-    place = Path(page).absolute()
-    there = next(path for path in (place, *place.parents) if path.exists())
-    # An existing page must be a file, and a new one must be in a folder.
-    if there.is_dir() == (there == place) or not os.access(there, os.W_OK):
-        raise OSError(f"We cannot write the page {str(page)!r}. Give another path with --page.")
-    return page
-
-
 def trial(name: str, page: str | None) -> None:
     from .trial import trial as show
 
     course = _course()
-    place = _writable(page or course.archive.with_name("try.html"))
+    place = page or course.archive.with_name("try.html")
     print(f"The page: {show(course, name, place)}")
 
 
@@ -190,7 +181,7 @@ def selftest(only: Sequence[str], page: str | None, sources: Path | None) -> Non
     from .selftest import selftest as try_all
 
     course = _course(sources)
-    place = _writable(page or course.archive.with_name("selftest.html"))
+    place = page or course.archive.with_name("selftest.html")
     faults = try_all(course, place, only)
     print(f"The page: {place}")
     if faults:

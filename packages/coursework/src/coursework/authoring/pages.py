@@ -1,6 +1,7 @@
 """The templates of pages and of files for other systems, which escape everything but HTML."""
 
 import base64
+from collections import Counter
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
@@ -17,6 +18,7 @@ ENVIRONMENT = Environment(
     lstrip_blocks=True,
 )
 ENVIRONMENT.filters |= {
+    "counted": Counter,
     "base64": lambda data: base64.b64encode(data).decode("ascii"),
     "message": lambda reply: Markup(to_html(reply, mathml)),
     "number_of": number_of,

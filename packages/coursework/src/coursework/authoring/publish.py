@@ -131,14 +131,11 @@ def questions_wheel(course: Course, module: str, folder: str | Path) -> Path:
 
 
 def _maker() -> Callable[[Parts, Path, Path], None]:
-    offers = list(metadata.entry_points(group=GROUP))
+    offers = tuple(metadata.entry_points(group=GROUP))
     if not offers:
         raise AuthorError(
             "Publishing needs notebook-pages. Install it from its folder in the repository of "
             "coursework, then run `python -m notebook_pages.set_up` to download its parts."
         )
-    if len(offers) > 1:
-        named = " and ".join(f"{offer.dist.name} ({offer.value})" for offer in offers if offer.dist)
-        raise AuthorError(f"Several packages make pages: {named}. Uninstall all but one.")
     make: Callable[[Parts, Path, Path], None] = offers[0].load()
     return make

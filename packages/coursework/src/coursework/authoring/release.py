@@ -32,6 +32,7 @@ from ..checking.questions import NOTEBOOK, beside, salt_of_all
 from ..checking.reading import canonical, read
 from ..checking.variants import image
 from .author import AuthoredQuestion, AuthorError, Pages, solution_code
+from .closed import Asked, asked_in
 from .course import Course
 from .selftest import secrets_of, told_openly, try_question
 from .source import (
@@ -89,6 +90,8 @@ class Made(NamedTuple):
         The answers, by question with variants.
     after : dict of list of str
         The questions that each gives hints for.
+    asked : dict of Asked
+        What is to be counted of each question.
     """
 
     name: str
@@ -97,6 +100,7 @@ class Made(NamedTuple):
     code: str
     answers: dict[str, AboutAnswer]
     after: dict[str, list[str]]
+    asked: dict[str, Asked]
 
 
 # --- the exercise notebook ----------------------------------------------------------------------
@@ -125,11 +129,8 @@ def exercise_notebook(source: Source, roster: bool = False) -> NotebookNode:
         if shows_variants(source.notebook.cells, number):
             continue
         elif number in source.figures:
-            cells.append(
-                nbformat.v4.new_markdown_cell(
-                    image(source.figures[number].picture(), source.figures[number].alt)
-                )
-            )
+            figure = source.figures[number]
+            cells.append(nbformat.v4.new_markdown_cell(image(figure.picture(), figure.alt)))
         elif cell.cell_type != "code":
             cells.append(cell)
         else:
@@ -142,20 +143,22 @@ def exercise_notebook(source: Source, roster: bool = False) -> NotebookNode:
                 if re.search(rf"check\(\s*['\"]{re.escape(name)}['\"]", code.source)
             ]
             if blanks:
-                code.metadata["nbgrader"] = _nbgrader(
-                    code, owners[blanks[0]].replace("/", "-"), solution=True
-                )
+                answered = _identifier(owners[blanks[0]])
+                code.metadata["nbgrader"] = _nbgrader(code, answered, solution=True)
             elif graded:
-                code.metadata["nbgrader"] = _nbgrader(
-                    code,
-                    f"check-{graded[0].name.replace('/', '-')}",
-                    points=sum(question.worth for question in graded),
-                )
+                points = sum(question.worth for question in graded)
+                checked_first = f"check-{_identifier(graded[0].name)}"
+                code.metadata["nbgrader"] = _nbgrader(code, checked_first, points=points)
             cells.append(code)
     for number, cell in enumerate(cells):
         cell["id"] = f"cell-{number}"
     made: NotebookNode = nbformat.v4.new_notebook(cells=cells, metadata=METADATA)
     return made
+
+
+def _identifier(question: str) -> str:
+    """Return the name of a question as nbgrader allows it."""
+    return question.replace("/", "-")
 
 
 def _nbgrader(
@@ -266,18 +269,19 @@ def _release_one(path: Path, course: Course) -> Made:
         nbformat.write(
             exercise_notebook(source, course.roster), course.exercises / f"{source.name}.ipynb"
         )
-    pages = {name: source.questions[name].pages for name in source.rules}
+    with_variants = {name: source.questions[name] for name in source.rules}
     return Made(
         source.name,
         max((rule.count for rule in source.rules.values()), default=1),
-        pages,
+        {name: question.pages for name, question in with_variants.items()},
         solution_code(source.notebook),
-        {name: _about_answer(source.questions[name]) for name in source.rules},
+        {name: _about_answer(question) for name, question in with_variants.items()},
         {
             name: list(question.after)
             for name, question in source.questions.items()
             if question.after
         },
+        asked_in(source),
     )
 
 
@@ -438,7 +442,7 @@ def release(
     only: Collection[str] = (),
     run: bool = True,
     variants: Collection[int] | None = None,
-) -> list[str]:
+) -> list[Made]:
     """Make the exercise notebooks and the sealed questions.
 
     Parameters
@@ -454,8 +458,8 @@ def release(
 
     Returns
     -------
-    list of str
-        The names of the notebooks that were made.
+    list of Made
+        The notebooks that were made.
 
     Raises
     ------
@@ -510,7 +514,7 @@ def release(
                 if notebook.name != CHAPTERS
             ]
             list(pool.map(_run_one, exercises, [course.sealed] * len(exercises)))
-    return [notebook.name for notebook in made]
+    return made
 
 
 def _demand_sources(course: Course, known: Collection[str]) -> None:

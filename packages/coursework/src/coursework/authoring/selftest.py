@@ -11,10 +11,9 @@ import json
 import random
 import re
 import zipfile
-from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple, TypedDict
+from typing import NamedTuple
 
 import sympy
 from markupsafe import Markup
@@ -59,23 +58,11 @@ class Finding(NamedTuple):
     worth: float
     faults: list[str]
 
-    @property
-    def replies(self) -> Counter[tuple[str, str]]:
-        """How often each mistake gets each reply, since several of them may get the same."""
-        return Counter(self.mistakes)
-
 
 #: Descriptions of what no student may receive, by its text without spaces.
 Secrets = Mapping[str, str]
 #: The description of a secret, and where it was found.
 Leak = tuple[str, str]
-
-
-class Cell(TypedDict):
-    """A cell of a notebook, as JSON."""
-
-    cell_type: str
-    source: str | list[str]
 
 
 def try_question(question: AuthoredQuestion, against_sealed: bool = True) -> Finding:

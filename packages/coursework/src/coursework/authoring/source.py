@@ -21,12 +21,12 @@ import re
 import sys
 import textwrap
 import urllib.parse
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sized
+from collections.abc import Callable, Collection, Iterable, Mapping, Sized
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
+from unittest import mock
 
 import coursework
 from coursework.checking.plugins import folders_of, packages
@@ -404,10 +404,10 @@ def _figures_of_run(path: Path, notebook: NotebookNode, recorder: _Recorder) -> 
             ("check", recorder.answers.__setitem__),
             ("student", lambda identity="": recorder.identities.append(identity)),
         ):
-            replaced.enter_context(_replaced(coursework, name, record))
+            replaced.enter_context(mock.patch.object(coursework, name, record))
         # As in Jupyter, cells find the data and the modules beside their notebook.
         replaced.enter_context(contextlib.chdir(path.parent))
-        replaced.enter_context(_replaced(sys, "path", ["", *sys.path]))
+        replaced.enter_context(mock.patch.object(sys, "path", ["", *sys.path]))
         for number, cell in enumerate(notebook.cells):
             if cell.cell_type != "code":
                 continue
@@ -612,16 +612,6 @@ def _is_plain(value: object) -> bool:
         or isinstance(value, (list, tuple))
         and all(map(_is_plain, value))
     )
-
-
-@contextlib.contextmanager
-def _replaced(module: ModuleType, name: str, value: object) -> Iterator[None]:
-    before = getattr(module, name)
-    setattr(module, name, value)
-    try:
-        yield
-    finally:
-        setattr(module, name, before)
 
 
 def _run(source: str, namespace: dict[str, Any], where: str) -> Any:
