@@ -72,6 +72,8 @@ TIPS = MP.mpf("0.6371")
 #: The most edges of cells near an answer. Each adds a locker beyond it, and so does every
 #: combination.
 MOST_EDGES = 6
+#: The same for a wrong answer.
+MOST_EDGES_OF_WRONG = 3
 #: The same for students with other numbers, since each cell costs a slow hash at release.
 MOST_EDGES_FOR_OTHERS = 2
 #: We pad the pages of a first variant to a multiple of this.
@@ -181,16 +183,13 @@ class AuthoredQuestion:
         exam: bool = False,
     ) -> None:
         self.name, self.public, self.answer, self.variable = name, public, answer, variable
-        self.worth, self.credit, self.title = (
-            worth,
-            dict(credit or {}),
-            title or name.partition("/")[2].replace("-", " "),
-        )
-        self.partial = partial
+        self.title = title or name.partition("/")[2].replace("-", " ")
+        self.worth, self.partial, self.fixed = worth, partial, fixed
+        self.credit = dict(credit or {})
         self.rubric = dict(rubric) if isinstance(rubric, dict) else tuple(rubric or ())
-        self.hints, self.after, self.solution = dict(hints or {}), dict(after or {}), solution
-        self.pages, self.fixed = Pages(b""), fixed
-        self.turns, self.turned = list(turns), turned
+        self.solution, self.turned = solution, turned
+        self.hints, self.after = dict(hints or {}), dict(after or {})
+        self.pages, self.turns = Pages(b""), list(turns)
         self.ladder = ladder_of(public, ladder, self.turns)
         self.plain = self.to_plain(answer)
         held = {node[1] for node in self.plain["nodes"] if node[0] == "symbol"}
@@ -202,27 +201,22 @@ class AuthoredQuestion:
         self._demand_turns()
         # The author's words about a mistake suit the question better than the catalogue's.
         self.mistakes = [
-            *(
-                Mistake("authored", {"text": text}, wrong)
-                for text, wrong in (authored or {}).items()
-            ),
-            *self._catalogued(),
+            Mistake("authored", {"text": text}, wrong) for text, wrong in (authored or {}).items()
         ]
+        self.mistakes += self._catalogued()
         self._demand_notes()
         steps = itertools.chain(*self.hints.values(), *self.after.values(), self.ladder)
         self.near: list[str] = []
         self.slips = [
-            *(
-                f"Its options {first!r} and {second!r} count as the same answer."
-                for first, second in itertools.combinations(public.options, 2)
-                if first.lower() == second.lower()
-            ),
-            *(
-                f"Python reads a backslash in {text!r} as a special character. Put an r in front "
-                "of the quotation mark, or double each backslash."
-                for text in (*(authored or {}), *steps, *self.rubric, solution)
-                if re.search(r"[\a\b\f\r\t\v]", text)
-            ),
+            f"Its options {first!r} and {second!r} count as the same answer."
+            for first, second in itertools.combinations(public.options, 2)
+            if first.lower() == second.lower()
+        ]
+        self.slips += [
+            f"Python reads a backslash in {text!r} as a special character. Put an r in front "
+            "of the quotation mark, or double each backslash."
+            for text in (*(authored or {}), *steps, *self.rubric, solution)
+            if re.search(r"[\a\b\f\r\t\v]", text)
         ]
         if not unicodedata.is_normalized("NFC", name):
             self.slips.append(
@@ -280,9 +274,9 @@ class AuthoredQuestion:
                 ) from None
             if not varying <= _varying_in(reading.numbers):
                 continue
+            limit = sign_limit(self.public)
             if self.public.either_sign and any(
-                sign_limit(self.public) * 0.4 < abs(number) < sign_limit(self.public) * 1.6
-                for number in numbers
+                0.4 * limit < abs(number) < 1.6 * limit for number in numbers
             ):
                 continue
             if len(edges_near(self.public, numbers)) <= MOST_EDGES:
@@ -342,33 +336,30 @@ class AuthoredQuestion:
             for result in results
         ]
         shared = [known for known in columns[0] if all(known in column for column in columns)]
-        return [
-            Mistake(
-                note, json.loads(details), _replay([column[note, details] for column in columns])
-            )
-            for note, details in shared
-        ]
+        mistakes = []
+        for note, details in shared:
+            wrong_results = [column[note, details] for column in columns]
+            mistakes.append(Mistake(note, json.loads(details), _replay(wrong_results)))
+        return mistakes
 
     def _entries(self) -> dict[str, Entry]:
-        known = self._known()
-        right = known[0]
+        right, *wrong = self._known()
+        exact = self.public.tolerance is None
         by_text: dict[str, list[_Known]] = {}
-        for answer in known:
-            exact = self.public.tolerance is None
-            reach = REACH if answer is not right else 1 if exact else NEARLY
-            for text in fingerprints(
-                self.public, answer.reading, reach, most=MOST_EDGES if answer is right else 3
-            ):
+        for text in fingerprints(
+            self.public, right.reading, 1 if exact else NEARLY, most=MOST_EDGES
+        ):
+            by_text[text] = [right]
+        for answer in wrong:
+            for text in fingerprints(self.public, answer.reading, REACH, most=MOST_EDGES_OF_WRONG):
                 by_text.setdefault(text, []).append(answer)
-        self.near = []
-        if right.numbers and self.public.tolerance is None:
+        if right.numbers and exact:
             self.near = fingerprints(self.public, right.reading, near=True)
-        return {
-            text: Entry(
-                [self._known_answer(answer, alone=len(ones) == 1) for answer in ones], ones[0].plain
-            )
-            for text, ones in by_text.items()
-        }
+        entries = {}
+        for text, known in by_text.items():
+            answers = [self._known_answer(answer, alone=len(known) == 1) for answer in known]
+            entries[text] = Entry(answers, known[0].plain)
+        return entries
 
     def _known(self) -> list[_Known]:
         """Return the right answer, then every other answer that a mistake leads to."""
@@ -451,16 +442,13 @@ class AuthoredQuestion:
                 self.worth,
                 answer,
             )
-        pages = self.pages = Pages(
-            sealing.slow_key(self.public.salt, f"pages {self.fingerprint_of(self.plain)}"), first
-        )
+        secret = sealing.slow_key(self.public.salt, f"pages {self.fingerprint_of(self.plain)}")
+        pages = self.pages = Pages(secret, first)
         catalogue = by_short_name(self.public)
-        solution = (
-            pages.add_solution(to_page(self.solution), self.public.variant)
-            if self.solution
-            else None
-        )
-        wanted = []
+        solution = None
+        if self.solution:
+            solution = pages.add_solution(to_page(self.solution), self.public.variant)
+        wanted: list[tuple[str, str, list[bytes], dict[str, Json] | None]] = []
         for text, entry in self.entries.items():
             names = [short_name(*note) for note in entry.notes[:2]]
             # The author's own words for a mistake are not in the catalogue.
@@ -471,23 +459,20 @@ class AuthoredQuestion:
                 and not entry.answers[0].numbers
                 and known
             )
-            shortened = tuple(replace(answer, notes=answer.notes[:2]) for answer in entry.answers)
-            after = {name: tuple(steps) for name, steps in self.after.items()}
-            locker = Locker(shortened, after if entry.outcome == "correct" else {})
+            after: dict[str, tuple[str, ...]] = {}
             if entry.outcome == "correct":
-                plain = plain and not solution and not self.after
-            wanted.append(
-                (text, entry.outcome, names if plain else [], None if plain else locker.as_json())
-            )
-        chosen = [
-            (
-                text,
-                outcome,
-                names,
-                about and pages.add(about, solution if outcome == "correct" else None),
-            )
-            for text, outcome, names, about in wanted
-        ]
+                after = {name: tuple(steps) for name, steps in self.after.items()}
+                plain = plain and not solution and not after
+            if plain:
+                wanted.append((text, entry.outcome, names, None))
+                continue
+            shortened = tuple(replace(answer, notes=answer.notes[:2]) for answer in entry.answers)
+            wanted.append((text, entry.outcome, [], Locker(shortened, after).as_json()))
+        chosen: list[tuple[str, str, list[bytes], bytes | None]] = []
+        for text, outcome, names, content in wanted:
+            page_of_solution = solution if outcome == "correct" else None
+            page = pages.add(content, page_of_solution) if content else None
+            chosen.append((text, outcome, names, page))
         chosen += [(text, "mistake", [], None) for text in self.near]
         if solution and code:
             chosen.append((code_text(code), "mistake", [], solution))
@@ -710,9 +695,9 @@ def _demand_tolerance(name: str, tolerance: object, relative: object) -> None:
     """Reject a tolerance of zero, since the last digits differ from machine to machine."""
     if tolerance is not None and (not _is_number(tolerance) or tolerance <= 0):
         also = (
-            " With `relative`, it is the tolerance for an answer of zero."
-            if relative is not None
-            else ""
+            ""
+            if relative is None
+            else " With `relative`, it is the tolerance for an answer of zero."
         )
         raise AuthorError(f"{name}: `tolerance` must be more than zero, not {tolerance!r}.{also}")
     if relative is not None and (not _is_number(relative) or not 0 < relative < 1):
@@ -776,7 +761,12 @@ def question(
     known, values = kinds()[kind], kinds()[result or kind]
     _demand_arguments(name, {*rest} - {*values.arguments})
     _demand_forms(
-        name, mistakes, **{key: rest.get(key) for key in ("hints", "after", "credit", "worth")}
+        name,
+        mistakes,
+        hints=rest.get("hints"),
+        after=rest.get("after"),
+        credit=rest.get("credit"),
+        worth=rest.get("worth"),
     )
     _demand_tolerance(name, tolerance, relative)
     _demand_calls(name, calls)

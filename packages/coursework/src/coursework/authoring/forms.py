@@ -11,6 +11,7 @@ import sympy
 from sympy import I, Rational, cos, exp, pi, sin, sqrt, tan
 from sympy.core.function import AppliedUndef
 
+from ..checking.mistakes import unknowns_of
 from ..checking.plugins import kinds
 from ..checking.question import Question
 from ..checking.units import BASE, unit
@@ -55,12 +56,7 @@ def _rewrite(expression: sympy.Expr, sines: Change, cosines: Change) -> sympy.Ex
 
 def unknowns(entries: Iterable[Answer]) -> list[sympy.Expr]:
     """Return the symbols and functions of time in some expressions."""
-    free: set[sympy.Expr] = set()
-    for entry in map(sympy.sympify, entries):
-        functions = entry.atoms(AppliedUndef)
-        times = {argument for function in functions for argument in function.args}
-        free |= functions | (entry.free_symbols - times)
-    return sorted(free, key=str)
+    return sorted(set().union(*map(unknowns_of, map(sympy.sympify, entries))), key=str)
 
 
 def flat(answer: Answer) -> tuple[list[Answer], Put]:

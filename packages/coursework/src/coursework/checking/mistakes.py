@@ -127,7 +127,7 @@ def as_matrix(answer: Any) -> Any:
 
 def of_symbols(question: Question, answer: Any) -> Iterator[Mistake]:
     """Iterate over a symbol's sign error, and two symbols interchanged."""
-    free = sorted(_unknowns(answer), key=str)
+    free = sorted(unknowns_of(answer), key=str)
     for symbol in free:
         changed = answer.xreplace({symbol: -symbol})
         yield Mistake("sign of a symbol", {"symbol": symbol.name}, changed)
@@ -136,7 +136,8 @@ def of_symbols(question: Question, answer: Any) -> Iterator[Mistake]:
         yield Mistake("symbols interchanged", {"first": first.name, "second": second.name}, changed)
 
 
-def _unknowns(answer: Any) -> set[Any]:
+def unknowns_of(answer: Any) -> set[Any]:
+    """Return the symbols and functions of time in an expression or a matrix."""
     functions = set(answer.atoms(AppliedUndef))
     times = {argument for function in functions for argument in function.args}
     return functions | (set(answer.free_symbols) - times)

@@ -23,6 +23,7 @@ import contextlib
 import dis
 import functools
 import io
+import json
 import math
 import numbers
 import operator
@@ -220,6 +221,22 @@ def to_plain(
             f"({type(error).__name__}). "
             "Give a SymPy expression, a matrix, a list of numbers or a string."
         ) from None
+
+
+def arguments_of(calls: Sequence[Sequence[object]], takes: str) -> list[list[object]]:
+    """Return new arguments of each call to a function, since it may change them.
+
+    With ``takes`` as ``"arrays"``, lists among them become arrays.
+    """
+    arguments: list[list[object]] = json.loads(json.dumps(calls))
+    if takes != "arrays":
+        return arguments
+    import numpy
+
+    return [
+        [numpy.array(part) if isinstance(part, list) else part for part in call]
+        for call in arguments
+    ]
 
 
 # The byte code of a function body that is still blank.

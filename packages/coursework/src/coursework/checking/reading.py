@@ -17,14 +17,13 @@ compares them directly, use the same functions. They see only the plain data of
 import functools
 import hashlib
 import itertools
-import json
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, cast
 
 from .evaluate import MP, NotSupported, TooLarge, Undefined, UnknownSymbol, real, values
 from .kinds import Blank, Fault, Number, Undecidable, is_blank, listed
-from .plain import Plain, Value, parts_of, text_of
+from .plain import Plain, Value, arguments_of, parts_of, text_of
 from .plugins import kind_of_values, kinds
 from .points import points
 from .question import Question
@@ -49,17 +48,10 @@ class Reading(NamedTuple):
 
 
 def calls_for(question: Question) -> list[list[Any]] | None:
-    """Return new arguments of each call to a function, because it may change them."""
+    """Return new arguments of each call to a function; ``None`` if it does not ask for one."""
     if question.kind != "function":
         return None
-    if question.takes == "arrays":
-        import numpy
-
-        return [
-            [numpy.array(part) if isinstance(part, list) else part for part in arguments]
-            for arguments in question.calls
-        ]
-    return [json.loads(json.dumps(arguments)) for arguments in question.calls]
+    return arguments_of(question.calls, question.takes or "lists")
 
 
 def read(question: Question, plain: Plain) -> Reading:
@@ -89,9 +81,9 @@ def read(question: Question, plain: Plain) -> Reading:
     for point in points(question):
         results = values(plain["nodes"], point)
         numbers.append([_number(question, results[leaf], varies) for leaf in leaves])
-    return Reading(
-        _with_units(question, value, numbers) if question.kind == "measurement" else numbers
-    )
+    if question.kind == "measurement":
+        numbers = _with_units(question, value, numbers)
+    return Reading(numbers)
 
 
 def fingerprint(question: Question, reading: Reading, near: bool = False) -> str:
@@ -146,9 +138,9 @@ def tolerances(question: Question) -> tuple[Number, Number]:
     """Return the tolerance of each number: an absolute part, and a share of the right number."""
     if question.tolerance is None:
         return EXACT, EXACT
-    return kind_of_values(question).parts * MP.mpf(str(question.tolerance)), MP.mpf(
-        str(question.relative or 0)
-    )
+    absolute = kind_of_values(question).parts * MP.mpf(str(question.tolerance))
+    relative = MP.mpf(str(question.relative or 0))
+    return absolute, relative
 
 
 def distance(question: Question, numbers: Sequence[Number], right: Sequence[Number]) -> Number:
@@ -242,13 +234,11 @@ def _number(question: Question, result: Any, varies: bool = False) -> Number:
         return real(result, *(max(part, EXACT) for part in tolerances(question)))
     except UnknownSymbol as error:
         name = error.args[0][:40]
-        known_symbols = list(question.symbols)
-        expected = (
-            f"this question has the symbol{'s' * (len(known_symbols) > 1)} {listed(known_symbols)}"
-            if known_symbols
-            else "this question has no symbols"
-        )
-        raise Fault("stray symbol", f"The answer contains `{name}`, but {expected}.") from None
+        symbols = "symbol" if len(question.symbols) == 1 else "symbols"
+        named = f"the {symbols} {listed(question.symbols)}" if question.symbols else "no symbols"
+        raise Fault(
+            "stray symbol", f"The answer contains `{name}`, but this question has {named}."
+        ) from None
     except Undefined as error:
         somewhere = " for some values of its symbols" if varies else ""
         raise Fault("undefined", f"The answer has no finite value{somewhere}: {error}.") from None
@@ -310,22 +300,16 @@ def _read_function(question: Question, plain: Plain) -> Reading:
     results = values(plain["nodes"], {})
     numbers = []
     for order, result in enumerate(returned):
-        arguments = ", ".join(
-            repr(part) for call in question.calls[order : order + 1] for part in call
-        )
-        # Arguments of more than a line, such as a log, would hide what went wrong.
-        which = (
-            f"In call {order + 1} of {len(returned)}"
-            + (f", with `{arguments}`," if 0 < len(arguments) <= 60 else "")
-            + " the function"
-        )
         if result[0] == "raised":
+            which = _which_call(question, order, len(returned))
             raise Fault("raised an error", f"{which} raised `{text_of(result)}`.")
         if is_blank(result):
+            which = _which_call(question, order, len(returned))
             raise Fault("returned nothing", f"{which} returned nothing. Is there a `return`?")
         try:
             numbers.append([_number(inner, results[leaf]) for leaf in _entries(inner, result)])
         except Fault as fault_of_result:
+            which = _which_call(question, order, len(returned))
             raise Fault(
                 fault_of_result.note,
                 f"{which} did not return what the question asks for. {fault_of_result.message}",
@@ -333,3 +317,11 @@ def _read_function(question: Question, plain: Plain) -> Reading:
     if len(numbers) != len(question.calls):
         raise Fault("raised an error", "The function did not return a result for every call.")
     return Reading(numbers)
+
+
+def _which_call(question: Question, order: int, count: int) -> str:
+    """Return the beginning of a sentence about one call of a function."""
+    arguments = ", ".join(map(repr, question.calls[order])) if order < len(question.calls) else ""
+    # Arguments of more than a line, such as a log, would hide what went wrong.
+    shown = f", with `{arguments}`," if 0 < len(arguments) <= 60 else ""
+    return f"In call {order + 1} of {count}{shown} the function"
