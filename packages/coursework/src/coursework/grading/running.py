@@ -27,7 +27,8 @@ from .workers import processors, side_by_side
 
 # Import the execution modules lazily: they load slowly, and only grading needs them.
 if TYPE_CHECKING:
-    from .execution.sandbox import Job, Limits
+    from .execution.isolation import Limits
+    from .execution.sandbox import Job
 
 #: The order of the work that was graded, and its isolation as JSON.
 Finished = tuple[int, dict[str, Json]]
@@ -37,7 +38,7 @@ AskedOf = Callable[[Work], dict[str, Asked]]
 
 
 def _limits() -> Limits:
-    from .execution.sandbox import Limits
+    from .execution.isolation import Limits
 
     return Limits()
 

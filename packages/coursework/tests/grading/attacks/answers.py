@@ -199,7 +199,7 @@ doubled = lambda x: x
         "doubled",
         IN_ITS_READER
         + """
-its['arguments_of'] = lambda calls: [[x] for x in CALLS]
+its['arguments_of'] = lambda *calls: [[x] for x in CALLS]
 doubled = lambda x: TABLE[x]
 """,
         spoils=True,

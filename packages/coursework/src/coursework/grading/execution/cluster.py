@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import CancelledError
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from unittest import mock
 
 from distributed import Client, Future, WorkerPlugin, as_completed, get_worker, protocol
 from distributed import client as client_of_dask
@@ -27,7 +27,8 @@ from ...checking.plain import NotPlain, read_plain
 from ..record import Result, read_result
 from ..versions import software
 from .cluster_keys import CERTIFICATE, KEY
-from .sandbox import Job, Limits, Sandbox, WeakIsolation, WorkerDied, given_up
+from .isolation import Limits
+from .sandbox import Job, Sandbox, WeakIsolation, WorkerDied, given_up
 
 CONNECT_WITHIN = "30s"
 
@@ -35,7 +36,7 @@ CONNECT_WITHIN = "30s"
 class Sandboxes(WorkerPlugin):
     """The sandboxes of one worker, which end with the grading."""
 
-    def __init__(self, name: str, limits: Mapping[str, Any], allow_weak_isolation: bool) -> None:
+    def __init__(self, name: str, limits: Mapping[str, Json], allow_weak_isolation: bool) -> None:
         self.name = name
         self.limits = limits
         self.allow_weak_isolation = allow_weak_isolation
@@ -49,7 +50,7 @@ class Sandboxes(WorkerPlugin):
         with self.making:
             if thread not in self.made:
                 self.made[thread] = Sandbox(
-                    Limits(**self.limits), allow_weak_isolation=self.allow_weak_isolation
+                    Limits.from_json(self.limits), allow_weak_isolation=self.allow_weak_isolation
                 )
             return self.made[thread]
 
@@ -114,14 +115,10 @@ def no_pickles() -> Iterator[None]:
         (client_of_dask, "loads", plain_data),
         (client_of_dask, "pickle", SimpleNamespace(loads=plain_data)),
     )
-    before = [getattr(place, name) for place, name, _ in replaced]
-    for place, name, value in replaced:
-        setattr(place, name, value)
-    try:
+    with contextlib.ExitStack() as stack:
+        for place, name, value in replaced:
+            stack.enter_context(mock.patch.object(place, name, value))
         yield
-    finally:
-        for (place, name, _), value in zip(replaced, before, strict=True):
-            setattr(place, name, value)
 
 
 def run_on_cluster(
@@ -162,7 +159,9 @@ def run_on_cluster(
         except OSError as error:
             raise ValueError(f"We cannot reach a Dask scheduler at {address} ({error}).") from None
         try:
-            client.register_plugin(Sandboxes(name, vars(limits), allow_weak_isolation), name=name)
+            client.register_plugin(
+                Sandboxes(name, limits.as_json(), allow_weak_isolation), name=name
+            )
         except OSError as error:
             raise ValueError(
                 f"We lost the connection to the scheduler at {address} ({error}). Run the same "

@@ -28,7 +28,7 @@ no privileges
 Sufficient are therefore seccomp, resource limits and no privileges, with namespaces or a recent
 Landlock. Every start also empties the environment, closes files and discards output.
 
-It uses only the standard library and system calls, and knows nothing about notebooks or answers.
+It knows nothing about notebooks or answers.
 """
 
 import contextlib
@@ -46,11 +46,13 @@ import sys
 import sysconfig
 import threading
 from collections.abc import Collection, Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NotRequired, TypedDict
 
 from coursework.checking.plugins import folders_of, packages
 from coursework.grading.execution import system_calls
+from coursework.grading.reading import AsJson
 
 NAMESPACES, LANDLOCK, SECCOMP = "namespaces", "landlock", "seccomp"
 LIMITS, PRIVILEGES = "resource limits", "no privileges"
@@ -68,24 +70,31 @@ HOW_TO_GET = {
 }
 
 
-class Time(TypedDict):
-    """Seconds that a cell, or reading an answer, may take."""
+@dataclass(frozen=True)
+class Limits(AsJson):
+    """The limits of one notebook. Seconds are processor time unless they are wall time.
 
-    processor: float
-    wall: float
+    Wall times are for code that waits. Time in which the code could have run but the machine was
+    busy does not count, so that load costs nobody an answer.
+    """
 
-
-class LimitsOfChild(TypedDict):
-    """The limits of one notebook, for the process that runs it."""
-
-    cell: Time
-    answer: Time
-    processor_seconds: int
-    memory_bytes: int
-    file_bytes: int
-    scratch_bytes: int
-    open_files: int
-    threads: int
+    cell_seconds: float = 20
+    cell_wall_seconds: float = 40
+    answer_seconds: float = 10
+    answer_wall_seconds: float = 20
+    notebook_seconds: float = 60
+    # For all runs of the notebook together.
+    notebook_wall_seconds: float = 180
+    # Wall time after a limit, before the process is killed.
+    grace_seconds: float = 1
+    # In addition to the libraries.
+    memory_bytes: int = 1 << 30
+    file_bytes: int = 32 << 20
+    scratch_bytes: int = 64 << 20
+    open_files: int = 256
+    threads: int = 64
+    # Of one notebook, in each order.
+    runs: int = 8
 
 
 #: The targets of the attempts that test the isolation.
@@ -95,8 +104,8 @@ Target = TypedDict(
         "tcp": int,
         "udp": int,
         "local": str,
-        "limits": LimitsOfChild,
         "files": NotRequired[list[str]],
+        "limits": NotRequired[Limits],
         "threads in use": NotRequired[int],
     },
 )
@@ -300,18 +309,17 @@ def restrict_files(readable: Iterable[str], scratch: str) -> None:
 # ---- limits and privileges
 
 
-def limit_resources(limits: LimitsOfChild, memory_in_use: int, threads_in_use: int) -> None:
+def limit_resources(limits: Limits, memory_in_use: int, threads_in_use: int) -> None:
     """Lower this process's limits for good.
 
-    `limits` has `memory_bytes` and `threads` (beyond those in use at the start),
-    `processor_seconds`, `file_bytes` and `open_files`.
+    Memory and threads are beyond those in use at the start.
     """
-    seconds = int(limits["processor_seconds"])
+    seconds = max(1, round(limits.notebook_seconds))
     for which, value in (
-        (resource.RLIMIT_AS, memory_in_use + limits["memory_bytes"]),
-        (resource.RLIMIT_FSIZE, limits["file_bytes"]),
-        (resource.RLIMIT_NOFILE, limits["open_files"]),
-        (resource.RLIMIT_NPROC, threads_in_use + limits["threads"]),
+        (resource.RLIMIT_AS, memory_in_use + limits.memory_bytes),
+        (resource.RLIMIT_FSIZE, limits.file_bytes),
+        (resource.RLIMIT_NOFILE, limits.open_files),
+        (resource.RLIMIT_NPROC, threads_in_use + limits.threads),
         # Not 0, for which a program that handles crashes would be started nevertheless; for 1 it is
         # not (core(5)).
         (resource.RLIMIT_CORE, 1),
@@ -377,7 +385,7 @@ def adopt_orphans() -> None:
 def confine(
     layers: Collection[str],
     *,
-    limits: LimitsOfChild,
+    limits: Limits,
     readable: Iterable[str],
     scratch: str,
     own_scratch: bool,
@@ -388,7 +396,7 @@ def confine(
     """Put `layers` in force on this process, for good; raise if one cannot be."""
     die_with_parent()
     if NAMESPACES in layers and own_scratch:
-        mount_own_scratch(scratch, limits["scratch_bytes"], user)
+        mount_own_scratch(scratch, limits.scratch_bytes, user)
     os.chdir(scratch)
     if LIMITS in layers:
         limit_resources(limits, memory_in_use, threads_in_use)
@@ -490,18 +498,18 @@ def _dump(target: Target) -> None:
 
 
 def _memory(target: Target) -> None:
-    mmap.mmap(-1, target["limits"]["memory_bytes"] + (1 << 20)).close()
+    mmap.mmap(-1, target["limits"].memory_bytes + (1 << 20)).close()
 
 
 def _file(target: Target) -> None:
     with open("long", "wb") as file:
-        file.truncate(target["limits"]["file_bytes"] + 1)
+        file.truncate(target["limits"].file_bytes + 1)
 
 
 def _files(target: Target) -> None:
     opened = []
     try:
-        for _ in range(target["limits"]["open_files"] + 1):
+        for _ in range(target["limits"].open_files + 1):
             opened.append(os.dup(2))
     finally:
         for handle in opened:
@@ -514,7 +522,7 @@ def _threads(target: Target) -> None:
     started = []
     try:
         # Other processes of the same user may have ended since they were counted.
-        for _ in range(target["threads in use"] + target["limits"]["threads"] + 1):
+        for _ in range(target["threads in use"] + target["limits"].threads + 1):
             started.append(threading.Thread(target=done.wait))
             started[-1].start()
     except RuntimeError:

@@ -42,10 +42,10 @@ import warnings
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NotRequired, TypedDict
 
-from coursework.checking.plain import NotPlain, to_plain
+from coursework.checking.plain import NotPlain, arguments_of, to_plain
 from coursework.checking.variants import Given
 from coursework.grading.execution.event_loop import PipeEventLoop
-from coursework.grading.execution.isolation import LimitsOfChild, Time
+from coursework.grading.execution.isolation import Limits
 
 if TYPE_CHECKING:
     from IPython.core.inputtransformer2 import TransformerManager
@@ -113,9 +113,6 @@ class Shell:
             ) as file:
                 file.write(cell)
 
-    def system(self, command: str) -> None:
-        return None
-
     def getoutput(self, command: str, *rest: object, **options: object) -> list[str]:
         return []
 
@@ -142,19 +139,6 @@ def nothing(*arguments: object, **options: object) -> None:
     """Do nothing, in place of functions that only show something."""
 
 
-def arguments_of(calls: Calls) -> list[list[object]]:
-    """Return the arguments of each call to a function, as new copies, since it may change them."""
-    arguments: list[list[object]] = json.loads(json.dumps(calls["arguments"]))
-    if calls["as"] == "arrays":
-        import numpy
-
-        arguments = [
-            [numpy.array(part) if isinstance(part, list) else part for part in call]
-            for call in arguments
-        ]
-    return arguments
-
-
 def warm_up() -> None:
     """Load what is imported on first use, before the children are forked."""
     import IPython.display  # noqa: F401
@@ -174,7 +158,7 @@ def transformer() -> TransformerManager:
     return TransformerManager()
 
 
-def run(job: int, records: int, secret: int, limits: LimitsOfChild, folder: str) -> None:
+def run(job: int, records: int, secret: int, limits: Limits, folder: str) -> None:
     """Run the job read from the handle `job`; write records to the handle `records`.
 
     The secret calls are read from the handle `secret` at the end.
@@ -189,9 +173,7 @@ def run(job: int, records: int, secret: int, limits: LimitsOfChild, folder: str)
 
 
 class _Notebook:
-    def __init__(
-        self, job: Job, records: int, secret: int, limits: LimitsOfChild, folder: str
-    ) -> None:
+    def __init__(self, job: Job, records: int, secret: int, limits: Limits, folder: str) -> None:
         self.job = job
         self.records = records
         self.secret = secret
@@ -226,7 +208,8 @@ class _Notebook:
                 self.step(
                     ["cell", index],
                     lambda: self.execute(self.job["cells"][index]),
-                    self.limits["cell"],
+                    self.limits.cell_seconds,
+                    self.limits.cell_wall_seconds,
                 )
         self.cell = None
         for question, variable in self.job["variables"].items():
@@ -256,11 +239,18 @@ class _Notebook:
                 function: object = function, about: Calls = about, record: Record = record
             ) -> None:
                 try:
-                    record["plain"] = to_plain(function, arguments_of(about))
+                    record["plain"] = to_plain(
+                        function, arguments_of(about["arguments"], about["as"])
+                    )
                 except NotPlain as error:
                     record["unreadable"] = str(error)[:LONGEST_ERROR]
 
-            end = self.step(["answer", question], read, self.limits["answer"])
+            end = self.step(
+                ["answer", question],
+                read,
+                self.limits.answer_seconds,
+                self.limits.answer_wall_seconds,
+            )
             if end["outcome"] != "done":
                 record = {"secret": question, "unreadable": end["error"]}
             self.emit(record)
@@ -347,7 +337,9 @@ class _Notebook:
                 record["unreadable"] = str(error)[:LONGEST_ERROR]
             self.emit(record)
 
-        end = self.step(["answer", question], read, self.limits["answer"])
+        end = self.step(
+            ["answer", question], read, self.limits.answer_seconds, self.limits.answer_wall_seconds
+        )
         if end["outcome"] != "done":
             record.pop("plain", None)
             record["unreadable"] = end["error"]
@@ -359,18 +351,20 @@ class _Notebook:
 
     def calls(self, question: str) -> list[list[object]] | None:
         calls = self.job["calls"].get(question)
-        return None if calls is None else arguments_of(calls)
+        return None if calls is None else arguments_of(calls["arguments"], calls["as"])
 
     # -- one step: a cell, or reading an answer
 
-    def step(self, step: Step, action: Callable[[], object], seconds: Time) -> Record:
+    def step(
+        self, step: Step, action: Callable[[], object], processor: float, wall: float
+    ) -> Record:
         """Do one thing within its time. Steps may be nested, such as a check within a cell."""
         self.emit({"begin": step})
         outer = self.time_left()
         end: Record = {"end": step, "outcome": "done"}
         try:
             try:
-                self.start_timers(seconds["processor"], seconds["wall"])
+                self.start_timers(processor, wall)
                 action()
             finally:
                 sys.setrecursionlimit(self.recursion_limit)

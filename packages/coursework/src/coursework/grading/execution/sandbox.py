@@ -36,11 +36,11 @@ import tempfile
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import IO, NotRequired, Self, TypedDict
+from typing import IO, NotRequired, TypedDict
 
 from coursework.checking.fields import Json, written
 from coursework.grading.execution import isolation, records, scratch, steady
-from coursework.grading.execution.isolation import LAYERS, NAMESPACES, LimitsOfChild, Report, Target
+from coursework.grading.execution.isolation import LAYERS, NAMESPACES, Limits, Report, Target
 from coursework.grading.execution.records import Record, Step
 from coursework.grading.execution.warm_parent import NOT_CONFINED
 from coursework.grading.record import MISSING, Answer, Cell, Isolation, Result
@@ -96,47 +96,7 @@ class WorkerDied(RuntimeError):
     """An error because the warm parent has ended."""
 
 
-@dataclasses.dataclass(frozen=True)
-class Limits:
-    """The limits of one notebook. Seconds are processor time unless they are wall time.
-
-    Wall times are for code that waits. Time in which the code could have run but the machine was
-    busy does not count, so that load costs nobody an answer.
-    """
-
-    cell_seconds: float = 20
-    cell_wall_seconds: float = 40
-    answer_seconds: float = 10
-    answer_wall_seconds: float = 20
-    notebook_seconds: float = 60
-    # For all runs of the notebook together.
-    notebook_wall_seconds: float = 180
-    # Wall time after a limit, before the process is killed.
-    grace_seconds: float = 1
-    # In addition to the libraries.
-    memory_bytes: int = 1 << 30
-    file_bytes: int = 32 << 20
-    scratch_bytes: int = 64 << 20
-    open_files: int = 256
-    threads: int = 64
-    # Of one notebook, in each order.
-    runs: int = 8
-
-    def for_child(self) -> LimitsOfChild:
-        """Return the limits in the form that the confined process takes."""
-        return {
-            "cell": {"processor": self.cell_seconds, "wall": self.cell_wall_seconds},
-            "answer": {"processor": self.answer_seconds, "wall": self.answer_wall_seconds},
-            "processor_seconds": max(1, round(self.notebook_seconds)),
-            "memory_bytes": self.memory_bytes,
-            "file_bytes": self.file_bytes,
-            "scratch_bytes": self.scratch_bytes,
-            "open_files": self.open_files,
-            "threads": self.threads,
-        }
-
-
-class Sandbox:
+class Sandbox(contextlib.AbstractContextManager["Sandbox"]):
     """One warm parent, isolated and tested, that runs one notebook at a time.
 
     Parameters
@@ -161,11 +121,6 @@ class Sandbox:
         allow_weak_isolation: bool = False,
         without: Collection[str] = (),
     ) -> None:
-        unknown = set(without) - set(LAYERS)
-        if unknown:
-            raise ValueError(
-                f"unknown layers {sorted(unknown)}: the layers are {', '.join(LAYERS)}"
-            )
         if not sys.platform.startswith("linux"):
             raise WeakIsolation(
                 "Isolating student code needs Linux. Elsewhere, use WSL or a container."
@@ -179,9 +134,6 @@ class Sandbox:
         self.base: str | None = None
         self.report: Report
         self.start()
-
-    def __enter__(self) -> Self:
-        return self
 
     def __exit__(self, *error: object) -> None:
         self.close()
@@ -222,7 +174,6 @@ class Sandbox:
             "tcp": tcp.getsockname()[1],
             "udp": udp.getsockname()[1],
             "local": name,
-            "limits": self.limits.for_child(),
         }
 
     def launched(self, target: Target) -> Report:
@@ -296,6 +247,7 @@ class Sandbox:
             # Make the file that is open to everybody only when a process is there that will remove
             # it.
             "target": target | {"files": [file_outside(self.base)]},
+            "limits": self.limits.as_json(),
             "base": self.base,
             "why no namespaces": why_not,
             "user": new_user(),
@@ -399,10 +351,6 @@ class _Run:
         self.damaged = 0
         self.unknown: dict[str, bool] = {}
         self.notes: list[str] = []
-        if not isinstance(job["id"], str) or not all(
-            isinstance(cell["source"], str) for cell in job["cells"]
-        ):
-            raise TypeError("the id of a job and the sources of its cells must be strings")
 
     def result(self) -> Result:
         number = len(self.job["cells"])
@@ -567,7 +515,7 @@ class _Once:
             job.write(self.job)
             job.seek(0)
             self.sandbox.send(
-                {"run": {"limits": self.limits.for_child()}},
+                {"run": self.limits.as_json()},
                 [job.fileno(), writing.fileno(), secret.fileno()],
             )
             writing.close()
@@ -738,10 +686,8 @@ class _Once:
         elif self.killed_for == "timeout" or how.get("signal") == signal.SIGXCPU:
             outcome, error = "timeout", "It exceeded the time limit."
         elif "signal" in how:
-            outcome, error = (
-                "killed",
-                f"The process was killed by {signal.Signals(how['signal']).name}.",
-            )
+            name = signal.Signals(how["signal"]).name
+            outcome, error = "killed", f"The process was killed by {name}."
         self.ending = outcome, error
 
 

@@ -8,8 +8,8 @@ It exchanges single messages in JSON with the process that started it:
 
     in   {"start": {...}}                      once: how to isolate, what to try
     out  {"ready": report}
-    in   {"run": {"limits": {...}}}            with three handles: the job, where records go,
-                                               and the secret calls
+    in   {"run": {...}}                        the limits; with three handles: the job, where
+                                               records go, and the secret calls
     out  {"ended": {"signal": n} or {"code": n}, "scratch full": bool}
     in   {"kill": true}                        while a notebook runs
 """
@@ -29,6 +29,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NoReturn, TypedDict
 
+from coursework.checking.fields import Json
 from coursework.checking.plugins import packages
 from coursework.grading.execution import isolation, scratch
 from coursework.grading.execution.isolation import (
@@ -38,7 +39,7 @@ from coursework.grading.execution.isolation import (
     PRIVILEGES,
     IsolationError,
     Layer,
-    LimitsOfChild,
+    Limits,
     Report,
     Target,
 )
@@ -58,6 +59,7 @@ Start = TypedDict(
     {
         "without": list[str],
         "target": Target,
+        "limits": dict[str, Json],
         "base": str,
         "threads in use": int,
         "user": int,
@@ -65,12 +67,6 @@ Start = TypedDict(
         "why no namespaces": str,
     },
 )
-
-
-class Run(TypedDict):
-    """A notebook to be run."""
-
-    limits: LimitsOfChild
 
 
 class Tried(TypedDict, total=False):
@@ -84,7 +80,7 @@ class Message(TypedDict, total=False):
     """A message from outside, one of these."""
 
     start: Start
-    run: Run
+    run: dict[str, Json]
     kill: bool
 
 
@@ -153,6 +149,7 @@ class WarmParent:
         self.control = control
         self.off = set(start["without"])
         self.target = start["target"]
+        self.target["limits"] = Limits.from_json(start["limits"])
         self.readable = readable
         self.why_no_namespaces = start["why no namespaces"]
         # A process in namespaces does these, even before we know whether they stop enough.
@@ -194,7 +191,7 @@ class WarmParent:
         if folder != self.base:
             scratch.remove_folder(folder)
 
-    def confine(self, layers: Collection[str], limits: LimitsOfChild, folder: str) -> None:
+    def confine(self, layers: Collection[str], limits: Limits, folder: str) -> None:
         isolation.confine(
             layers,
             limits=limits,
@@ -351,19 +348,17 @@ class WarmParent:
             if "run" not in message:
                 # This is a late "kill", for a process that has ended.
                 continue
-            send(self.control, self.run(message["run"], handles))
+            send(self.control, self.run(Limits.from_json(message["run"]), handles))
 
-    def run(self, run: Run, handles: Sequence[int]) -> dict[str, object]:
+    def run(self, limits: Limits, handles: Sequence[int]) -> dict[str, object]:
         folder = self.new_scratch(self.layers)
         parent = os.getpid()
         child = os.fork()
         if child == 0:
-            self.be_notebook(parent, run, handles, folder)
+            self.be_notebook(parent, limits, handles, folder)
         for handle in handles:
             os.close(handle)
-        full = self.wait(
-            child, None if folder == self.base else folder, run["limits"]["scratch_bytes"]
-        )
+        full = self.wait(child, None if folder == self.base else folder, limits.scratch_bytes)
         status = self.end_all(child)
         self.remove_scratch(folder)
         how = (
@@ -389,7 +384,9 @@ class WarmParent:
         finally:
             os.close(handle)
 
-    def be_notebook(self, parent: int, run: Run, handles: Sequence[int], folder: str) -> NoReturn:
+    def be_notebook(
+        self, parent: int, limits: Limits, handles: Sequence[int], folder: str
+    ) -> NoReturn:
         """Give up, in the child, what a notebook must not have, and run it. Does not return."""
         code = NOT_CONFINED
         try:
@@ -398,7 +395,7 @@ class WarmParent:
             for handle, place in zip(handles, (JOB, RECORDS, SECRET), strict=True):
                 os.dup2(handle, place, False)
             os.closerange(SECRET + 1, 1 << 20)
-            self.confine(self.layers, run["limits"], folder)
+            self.confine(self.layers, limits, folder)
             # From here on, only records leave the process.
             os.dup2(1, 2)
             if os.getppid() != parent:
@@ -407,7 +404,7 @@ class WarmParent:
             code = 1
             from coursework.grading.execution import notebook
 
-            notebook.run(JOB, RECORDS, SECRET, run["limits"], folder)
+            notebook.run(JOB, RECORDS, SECRET, limits, folder)
             code = 0
         except Exception as error:
             os.write(2, f"{type(error).__name__}: {error}\n".encode(errors="replace"))
