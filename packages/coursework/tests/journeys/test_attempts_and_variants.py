@@ -99,8 +99,8 @@ def test_a_variant_is_taken_out_before_a_late_notebook_comes(tmp_path):
     assert (
         waits["student"] == cleared and "Which edition did this student have?" in waits["message"]
     )
-    said = course.run("why", shown, "hw1")
+    said = course.run("why", "marks", shown, "hw1")
     assert "of 4, as the source was before): correct" in said
-    assert "of 3): correct" in course.run("why", new, "hw1")
+    assert "of 3): correct" in course.run("why", "marks", new, "hw1")
     for _ in range(2):
         assert "Marks changed: 0." in course.regrade()

@@ -71,7 +71,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     hand_in(folder, "handed-in/ada/first-steps.ipynb")
     for command, said in (
         ("regrade marks", "There are no records"),
-        ("why ada first-steps", "nobody yet. If your marks are elsewhere"),
+        ("why marks ada first-steps", "nobody yet. If your marks are elsewhere"),
         ("term new marks --roster course.toml", "lists no students"),
         ("grade handed-out --out marks", "does not exist"),
         ("merge marks handed-out.csv", "does not exist"),
@@ -93,12 +93,12 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     hand_in(folder, "handed-in/cem/first-steps.ipynb", area="area = ...", slope="slope = ...")
     assert "Give the folder with the submissions" in run("grade . --out marks", fails=True)
     assert "handed in nothing: dan" in run("grade handed-in --out marks")
-    assert "ada, first-steps: 6 of 6 points." in run("why ada first-steps")
-    assert "area: wrong (This is the area of the rectangle" in run("why ben first-steps")
+    assert "ada, first-steps: 6 of 6 points." in run("why marks ada first-steps")
+    assert "area: wrong (This is the area of the rectangle" in run("why marks ben first-steps")
     for command, said in (
-        ("why ada first-step", "Did you mean 'first-steps'?"),
-        ("why ada FIRST-STEPS", "Did you mean 'first-steps'?"),
-        ("why ADA first-steps", "Did you mean 'ada'?"),
+        ("why marks ada first-step", "Did you mean 'first-steps'?"),
+        ("why marks ada FIRST-STEPS", "Did you mean 'first-steps'?"),
+        ("why marks ADA first-steps", "Did you mean 'ada'?"),
         ("export marks --lms solutions", "We cannot read solutions: Is a directory."),
         ("export marks --feedback solutions", "solutions is a folder. Give"),
         (
@@ -138,7 +138,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     assert "already exists" in run("term new marks-2027 --roster next.csv", fails=True)
     hand_in(folder, "next/eva/first-steps.ipynb")
     run("grade next --out marks-2027")
-    assert "6 points" not in run("why eva first-steps --marks marks-2027")
+    assert "6 points" not in run("why marks-2027 eva first-steps")
 
 
 def ticked(table, **ticks):
@@ -182,7 +182,7 @@ def test_a_sitting_of_a_class(run, tmp_path, monkeypatch):
         place / "ticks.csv", area=lambda name: "b" if name < "s-10" else "A", slope=lambda _: "A"
     )
     assert "ticks.csv: 60." in run(merge) and "ticks.csv: 0." in run(merge)
-    assert "quiz: 2.5 of 3 points" in run("why s-00 quiz")
+    assert "quiz: 2.5 of 3 points" in run("why marks s-00 quiz")
     # Printed again, the table keeps its ticks, and the answers keep their decisions.
     run(command)
     assert "ticks.csv: 0." in run(merge)

@@ -246,7 +246,7 @@ def test_a_record_that_was_deleted_costs_nobody_a_mark(tmp_path):
     (course.marks / "records" / "ada" / "hw2.json").unlink()
     said = course.export(book, fails=True)
     assert "ada's record for hw2 is missing from" in said and "Grade again first" in said
-    assert "its record is gone: grade again" in course.run("why", "ada", "hw2", fails=True)
+    assert "its record is gone: grade again" in course.run("why", "marks", "ada", "hw2", fails=True)
     course.grade()
     course.export(book)
     assert course.column(book, "HW 2 (7)") == {"ada": "8", "ben": "8"}

@@ -153,7 +153,7 @@ def test_what_came_in_time_counts_before_what_came_late(tmp_path):
         )
         course.grade("--yes")
         assert course.points() == points
-    said = course.run("why", "ada", "hw1")
+    said = course.run("why", "marks", "ada", "hw1")
     assert "handed in 2025-10-09T10:00:00" in said and "late: 40 % lost" in said
     assert (
         "It was late: due 2025-10-05 23:59 UTC"
@@ -178,7 +178,7 @@ def test_a_group_hands_in_once(course):
     assert "is now" not in course.run(*alone.split()) + course.grade()
     assert course.points("hw1") == {"ada": 4, "aa": 4, "cem": 8}
     assert course.points("hw2") == {"aa": 0, "ben": 8}
-    said = course.run("term", "marks") + course.run("why", "ben", "hw2")
+    said = course.run("term", "marks") + course.run("why", "marks", "ben", "hw2")
     assert "ben, hw2: 8 of 8 points." in said and "late: 30 % lost" in said
     course.export(book := book_of(course))
     assert course.column(book, "HW 1 (11)") == {"ada": "4", "ben": "4", "cem": "8", "dan": "4"}
@@ -188,7 +188,7 @@ def test_a_group_hands_in_once(course):
     appeals = [{"student": "aa", "question": "hw1/arm", "words": "Why?"}]
     course.run("merge", "marks", course.write_table("appeals.csv", appeals))
     assert "  ben: hw1/arm\n  dan: hw1/arm" in course.export(book)
-    assert "dan (in aa), hw1: 4 of 8 points." in course.run("why", "dan", "hw1")
+    assert "dan (in aa), hw1: 4 of 8 points." in course.run("why", "marks", "dan", "hw1")
 
 
 def test_more_time_is_for_whom_it_is(course):
@@ -248,14 +248,14 @@ def test_a_mark_tells_its_life(course):
     course.change("hw2", load=(6, 8))
     course.regrade("--yes")
     course.export(book_of(course), "--assignment", "hw2")
-    said = course.run("why", "ada", "hw2")
+    said = course.run("why", "marks", "ada", "hw2")
     lines = said.splitlines()
     assert lines[0] == "ada, hw2: 8 of 8 points." and len(lines) <= 10
     assert (
         "0 of 8 points: graded" in said and "8 of 8 points: the questions or the software" in said
     )
     assert "8 written to 'HW 2 (12)' of " in said
-    assert "'eve' has no marks for 'hw2'" in course.run("why", "eve", "hw2", fails=True)
+    assert "'eve' has no marks for 'hw2'" in course.run("why", "marks", "eve", "hw2", fails=True)
 
 
 def test_a_blind_worksheet_of_moodle_is_a_roster_and_is_filled(tmp_path):
@@ -339,7 +339,7 @@ def test_gradescopes_own_lists_are_understood(tmp_path):
     (course.marks / "term.toml").write_text(f'{term}[groups]\nteam = ["3003", "4004"]\n')
     course.grade()
     assert course.points() == {"1001": 4, "ben@uni.example": 4, "team": 4}
-    assert "4004 (in team), hw1: 4 of 4 points." in course.run("why", "4004", "hw1")
+    assert "4004 (in team), hw1: 4 of 4 points." in course.run("why", "marks", "4004", "hw1")
     course.run("export", "marks", "--nbgrader", "grades.csv")
     (table,) = (tmp_path / "grades.csv").read_text().split("\n\n")
     assert [line.split(",")[3] for line in table.splitlines()[1:]] == [
@@ -353,14 +353,14 @@ def test_who_has_no_mark_is_told_why(course):
     (collected(course, "ben", "hw1") / "hw1.ipynb").write_text("no notebook")
     write_term(course, "[extensions.dan]", "hw1 = 'excused'")
     course.grade()
-    said = course.run("why", "ben", "hw1")
+    said = course.run("why", "marks", "ben", "hw1")
     assert "ben, hw1: nothing has been graded." in said
     assert (
         "not graded: submitted/ben/hw1/hw1.ipynb: Not a notebook" in said
         and "no mark is exported" in said
     )
-    assert "due 2025-10-05 23:59 CEST; it is exported as 0" in course.run("why", "cem", "hw1")
-    assert "CEST; excused" in course.run("why", "dan", "hw1")
+    assert "CEST; it is exported as 0" in course.run("why", "marks", "cem", "hw1")
+    assert "CEST; excused" in course.run("why", "marks", "dan", "hw1")
     assert "Not filled in, because excused in term.toml (1):\n  dan" in course.export(
         book_of(course), "--assignment", "hw1"
     )
@@ -369,7 +369,7 @@ def test_who_has_no_mark_is_told_why(course):
     assert "line 14: extensions name 'den'" in course.regrade(fails=True)
     # A class may have neither a term nor a roster.
     (course.marks / "term.toml").unlink()
-    assert "ben/hw1/hw1.ipynb: Not a notebook" in course.run("why", "ben", "hw1")
+    assert "ben/hw1/hw1.ipynb: Not a notebook" in course.run("why", "marks", "ben", "hw1")
 
 
 def test_nobody_else_on_the_machine_reads_marks(tmp_path):

@@ -236,14 +236,9 @@ ARGUMENTS = {
     "why": (
         "explain a mark, with its history",
         [
+            OUT,
             argument("student", metavar="STUDENT", help="the student's ID"),
             argument("assignment", metavar="ASSIGNMENT", help="the assignment's name"),
-            argument(
-                "--marks",
-                default="marks",
-                metavar="MARKS",
-                help="the folder of marks (default: %(default)s)",
-            ),
         ],
     ),
     "cluster": (
@@ -545,11 +540,11 @@ def export(
         print(gradebooks.write_nbgrader(nbgrader, marks))
 
 
-def why(student: str, assignment: str, marks: str) -> None:
+def why(out: str, student: str, assignment: str) -> None:
     from .reporting.life import life_of
     from .store import Store
 
-    print(*life_of(Store(marks), student, assignment), sep="\n")
+    print(*life_of(Store(out), student, assignment), sep="\n")
 
 
 def gradescope(marks: str, out: str, solutions: str | None, assignment: str) -> None:

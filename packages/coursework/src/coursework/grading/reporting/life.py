@@ -41,7 +41,7 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
             f"marks for {', '.join(known[:40]) or 'nobody yet'}"
             f"{', but its record is gone: grade again' if given else ''}."
             f"{f' Did you mean {near[0]!r}?' if near and not given else ''}"
-            f"{'' if all_given else ' If your marks are elsewhere, add --marks and their folder.'}"
+            f"{'' if all_given else ' If your marks are elsewhere, give their folder.'}"
         )
     comes_to = _of(given) if given else "nothing has been graded"
     lines = [f"{student}{f' (in {whose})' if whose != student else ''}, {assignment}: {comes_to}."]
