@@ -472,6 +472,9 @@ def test_a_full_disk_is_named(tmp_path):
             tmp_path / "marks.csv",
             (str((tmp_path / "/dev/full").write_text(part)) for part in "ab"),
         )
+    (tmp_path / "run.log").symlink_to("/dev/full")
+    with pytest.raises(OSError, match=r"No space left.*run\.log"):
+        Store(tmp_path).log("graded")
 
 
 def graded_lines(folder):

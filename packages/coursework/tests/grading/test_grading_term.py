@@ -364,6 +364,12 @@ def test_a_course_comes_to_a_page_for_each_student_and_a_table(out, rules):
         (out / "course" / "students" / link).exists()
         for link in re.findall(r'href="([^"]+)"', page)
     )
+    # Changes by hand are kept, and a message says where.
+    (out / "course" / "course.csv").write_text("changed")
+    said = write_course(Store(out), rules(roster=out.parent / "roster.csv"), now=now)
+    assert [
+        (kept.read_text(), str(kept) in said[-1]) for kept in out.glob("course/*-changed-*")
+    ] == [("changed", True)]
     # Marks stay in the table when a student leaves the roster, and a message says so.
     (out.parent / "later.csv").write_text("student\nann\nbob\ndora\n")
     said = write_course(Store(out), rules(roster=out.parent / "later.csv"), now=now)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import platform
 import sys
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
@@ -247,16 +246,11 @@ def grade(
         said = {"graded": 0 if dry_run else len(waiting), "kept": kept, "refused": refused}
         if dry_run:
             return {**said, "held": 0}
-        desk.store.log(
-            f"start: {len(waiting)} of {len(keys)} to grade, {refused} refused, on "
-            f"{platform.node()}"
-        )
         _run_and_judge(desk, waiting, running)
         laboratory = desk.settle(_candidates(desk, keys, waiting), REJUDGED)
         _keep_refused(desk.store, place, handed_in.refused)
         desk.report(course)
         say_other_numbers(desk.store, handed_in.work, desk.questions, desk.show)
-        desk.store.log("end")
     return {**said, "held": 0 if laboratory.agreed else len(laboratory.moves)}
 
 

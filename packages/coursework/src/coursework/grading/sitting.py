@@ -35,7 +35,7 @@ from .judging.term import FILE, Assignment, BadTerm, notebooks_of
 from .record import Answer, Record
 from .reporting import pages
 from .reporting.templates_of_pages import page
-from .store import file_name, write
+from .store import file_name, naming, write
 from .submissions.roster import Roster, cells_in
 from .tables import number, table
 
@@ -99,7 +99,8 @@ def sitting(
         if people is None:
             raise ValueError("Who is in the course? Set a roster in term.toml, or use --roster.")
         is_new = _has_entered(desk, name, tuple(questions))
-        desk.ask(course := Course(solutions, desk.term, [name]), [name], closing)
+        course = Course(solutions, desk.term, [name])
+        desk.ask(course, [name], closing)
         for question, (contract, *_) in desk.questions[name].items():
             if contract.plain is None:
                 raise ValueError(
@@ -107,7 +108,7 @@ def sitting(
                 )
         if is_new:
             path = desk.store.folder / FILE
-            with path.open("a", encoding="utf8") as file:
+            with naming(path), path.open("a", encoding="utf8") as file:
                 file.write(f"\n[assignments.{json.dumps(name)}]\nquestions = {list(questions)}\n")
             desk.tell(f"We added the sitting to {path}. In that file, set how much it counts.")
         settled = (desk.marked(_on_paper(desk, person, name, people)) for person in people.people)
@@ -208,11 +209,8 @@ def _decimals(contract: Contract) -> str:
     question = contract.question
     if contract.plain is None or question.symbols or question.kind == "measurement":
         return ""
-    return ", ".join(
-        number(float(entry))
-        for entries in read(question, contract.plain).numbers[:1]
-        for entry in entries
-    )
+    numbers = read(question, contract.plain).numbers
+    return ", ".join(number(float(entry)) for entries in numbers[:1] for entry in entries)
 
 
 def _printed(desk: Desk, name: str, records: Sequence[Record], paper: str) -> list[Path]:

@@ -139,17 +139,22 @@ class Store:
         path = self.folder / name
         return reader(json.loads(path.read_text("utf8")), str(path)) if path.exists() else None
 
-    def write_table(self, name: str, rows: Iterable[str]) -> str:
-        """Write a table; return where the old one is if a person has changed it since, else ""."""
-        path, kept, written = self.folder / name, "", self.said(TABLES, by_name(text)) or {}
-        digest = hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else ""
-        if digest != written.get(name, digest) and digest:
-            kept = str(path.with_stem(f"{path.stem}-changed-{digest[:8]}"))
-            os.replace(path, kept)
+    def write_table(self, name: str, rows: Iterable[str], advice: str) -> Iterator[str]:
+        """Write a table. If a person has changed it since, keep that one, and say so.
+
+        ``advice`` is how the person's changes can become marks.
+        """
+        path = self.folder / name
+        written = self.said(TABLES, by_name(text)) or {}
+        if path.exists():
+            there = hashlib.sha256(path.read_bytes()).hexdigest()
+            if there != written.get(name, there):
+                kept = path.with_stem(f"{path.stem}-changed-{there[:8]}")
+                os.replace(path, kept)
+                yield f"Somebody had changed {name}, so we kept that table as {kept}. {advice}"
         write(path, rows)
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         write(self.folder / TABLES, json.dumps({**written, name: digest}))
-        return kept
 
     def put_aside(self, student: str, assignment: str) -> Path:
         """Set a record aside, where it no longer counts; delete its page; return its new place."""
@@ -175,7 +180,8 @@ class Store:
         import datetime
 
         now = datetime.datetime.now().isoformat(" ", "milliseconds")
-        with open(self.folder / "run.log", "a", encoding="utf8") as file:
+        path = self.folder / "run.log"
+        with naming(path), open(path, "a", encoding="utf8") as file:
             file.write(f"{now}  {line}\n")
 
 
@@ -229,6 +235,16 @@ def feedback_of(student: str, assignment: str) -> str:
     return f"feedback/{file_name(student)}/{file_name(assignment)}.html"
 
 
+@contextlib.contextmanager
+def naming(path: Path) -> Iterator[None]:
+    """Name a file in the system's errors, which do not say which disk is full."""
+    try:
+        yield
+    except OSError as error:
+        error.filename = error.filename or str(path)
+        raise
+
+
 def write(
     path: str | Path,
     text: str | bytes | Iterable[str | bytes],
@@ -246,26 +262,19 @@ def write(
         raise ValueError(f"{path} is a folder. Give the name of a file.")
     path.parent.mkdir(mode=0o700 if private else 0o777, parents=True, exist_ok=True)
     half = path.with_name(f".half-{secrets.token_hex(8)}")
-    with open(
-        os.open(
-            half,
-            os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0),
-            0o600 if private else 0o666,
-        ),
-        "wb",
-    ) as file:
-        try:
-            for piece in (text,) if isinstance(text, (str, bytes)) else text:
-                file.write(
-                    piece.encode("utf8", "backslashreplace") if isinstance(piece, str) else piece
-                )
-            file.flush()
-            if lasting:
-                os.fsync(file.fileno())
-        except OSError as error:
-            # The system does not say which disk is full.
-            error.filename = error.filename or str(path)
-            raise
+    handle = os.open(
+        half,
+        os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0),
+        0o600 if private else 0o666,
+    )
+    with naming(path), open(handle, "wb") as file:
+        for piece in (text,) if isinstance(text, (str, bytes)) else text:
+            file.write(
+                piece.encode("utf8", "backslashreplace") if isinstance(piece, str) else piece
+            )
+        file.flush()
+        if lasting:
+            os.fsync(file.fileno())
     os.replace(half, path)
     # Windows cannot open a directory.
     if lasting and hasattr(os, "O_DIRECTORY"):

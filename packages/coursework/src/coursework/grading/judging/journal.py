@@ -29,6 +29,7 @@ from ...checking.fields import Fields, Json, Misread, one_of, text
 from ..locks import lock
 from ..reading import AsJson
 from ..record import Judged, Mark, Record
+from ..store import naming
 from ..submissions.roster import cells_in
 from ..tables import as_written, in_a_line
 
@@ -303,9 +304,8 @@ class Appealed:
     def as_json(self) -> dict[str, str]:
         """Return what we show its student."""
         first, last = self.steps[0], self.steps[-1]
-        answered = (
-            self.accepted.comment if self.accepted else last.words if len(self.steps) > 1 else ""
-        )
+        said = last.words if len(self.steps) > 1 else ""
+        answered = self.accepted.comment if self.accepted else said
         return {
             "when": first.when[:10],
             "words": first.words,
@@ -546,7 +546,7 @@ class Journal:
         question: str,
         changes: Mapping[str, tuple[float, str]],
         source: Mapping[str, float],
-        who: str | None = None,
+        who: str,
     ) -> list[Worth]:
         """Return new worths for lines of a rubric, without entering them.
 
@@ -559,7 +559,6 @@ class Journal:
         source : mapping
             The worth of each line in the source.
         """
-        who = who or getpass.getuser()
         return [
             Worth(
                 who=who,
@@ -660,7 +659,7 @@ class Journal:
     def _alone(self) -> Iterator[io.FileIO]:
         """Lock out other writers, and read what they have written."""
         # Use no buffer, so that closing the file does not write again what a full disk refused.
-        with open(self.path, "ab+", buffering=0) as file:
+        with naming(self.path), open(self.path, "ab+", buffering=0) as file:
             lock(file)
             file.seek(0)
             whole = file.read()
@@ -680,10 +679,8 @@ class Journal:
             yield file
 
     def _write(self, file: io.FileIO, events: Sequence[Event]) -> None:
-        lines, whole = (
-            memoryview(b"".join(_line(event) for event in events)),
-            file.seek(0, os.SEEK_END),
-        )
+        lines = memoryview(b"".join(_line(event) for event in events))
+        whole = file.seek(0, os.SEEK_END)
         try:
             while lines:
                 lines = lines[file.write(lines) :]
@@ -744,7 +741,8 @@ class Journal:
         ValueError
             The table cannot be read; nothing is entered.
         """
-        (header, rows), who = _table(path), who or getpass.getuser()
+        header, rows = _table(path)
+        who = who or getpass.getuser()
         if {"id", "version", "credit"} <= header:
             return self._take_in_decisions(path, rows, records, who)
         if {"student", "question", "words"} <= header:
@@ -769,7 +767,7 @@ class Journal:
             # The cell of a box contains its share of the points, then its words.
             share, _, words = row.get(row.get("tick", "").casefold() or "-", "").partition(": ")
             credit = _credit(
-                (row["credit"] or share or row.get("tick", "")), f"{path}, line {number}"
+                row["credit"] or share or row.get("tick", ""), f"{path}, line {number}"
             )
             if credit is None:
                 continue

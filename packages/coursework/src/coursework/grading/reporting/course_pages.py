@@ -6,9 +6,10 @@ from pathlib import Path
 
 from ...checking.writing import answer_as_text
 from ..judging.term import DAMAGED, FILE, Result, Term, results_of, unknown_times
+from ..record import Record
 from ..store import Store, feedback_of, file_name, write
 from ..submissions.intake import refused_of
-from ..tables import table
+from ..tables import lines
 from .statistics import Question, Same, Statistics
 from .templates_of_pages import ENVIRONMENT, page
 
@@ -63,7 +64,7 @@ def write_course(store: Store, term: Term, *, now: datetime.datetime | None = No
         worth[record.assignment] = record.worth
         students.update(term.members(record.student))
     people = term.roster.people if term.roster else students
-    lines = _misspelt(term, worth) + [
+    messages = _misspelt(term, worth) + [
         f"{student} has marks but is not in the roster. The table and the statistics still "
         "include this student. For somebody who has left the course, move "
         f"{store.records / file_name(student)} to {store.folder}/put-aside/{file_name(student)}."
@@ -71,19 +72,17 @@ def write_course(store: Store, term: Term, *, now: datetime.datetime | None = No
     ]
     students.update(people)
     term.demand_people(store.folder / FILE, students)
-    folder, rows, all_results = store.folder / FOLDER, [], list[Result]()
+    folder = store.folder / FOLDER
+    rows, all_results = list[list[object]](), list[Result]()
     refused = {file.student for file in refused_of(store)}
     damaged: dict[str, list[str]] = {}
     for student in sorted(students):
-        records = {
-            name: own_record
-            for name in term.assignments
-            if (
-                own_record := store.read(
-                    store.owner(student, name, term.group_of(student, name)), name
-                )
-            )
-        }
+        records: dict[str, Record] = {}
+        for name in term.assignments:
+            owner = store.owner(student, name, term.group_of(student, name))
+            own_record = store.read(owner, name)
+            if own_record is not None:
+                records[name] = own_record
         results, total = results_of(student, records, term, worth, now, refused)
         for result in results:
             if result.state == DAMAGED:
@@ -98,15 +97,19 @@ def write_course(store: Store, term: Term, *, now: datetime.datetime | None = No
         )
         rows.append(_row(student, results, total))
         all_results += results
-    lines += unknown_times(all_results, term)
-    lines += [
+    messages += unknown_times(all_results, term)
+    messages += [
         f"{name}: we did not grade the files of {', '.join(those)}. The totals leave them out "
         f"until a person has looked at them: {store.folder / 'refused.csv'} says why."
         for name, those in damaged.items()
     ]
-    write(folder / "course.csv", table(_header(term), rows))
+    messages += store.write_table(
+        f"{FOLDER}/course.csv",
+        lines(_header(term), rows),
+        "No command reads marks from it: change them with `coursework review`.",
+    )
     _write_questions(folder, statistics, term.name)
-    return lines
+    return messages
 
 
 def _misspelt(term: Term, worth: Mapping[str, float]) -> list[str]:

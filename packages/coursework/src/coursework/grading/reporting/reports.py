@@ -28,11 +28,6 @@ from ..submissions.intake import Refused, refused_of
 from ..tables import lines, table
 from .templates_of_pages import page
 
-#: How the changes in a table become marks.
-READS = {
-    "grades.csv": "No command reads marks from it: change them with `coursework review`.",
-    "undecided.csv": "Its decisions count once you give it to `coursework merge`.",
-}
 #: The addresses that feedback links to, as the course had them when it was graded.
 LINKS = "links.json"
 #: The words for outcomes that have a "yet" elsewhere, which would be wrong once work is graded.
@@ -105,7 +100,6 @@ class _Assignment:
         self.undecided: list[tuple[str, str, tuple[str, ...], str]] = []
         self.odd: dict[str, tuple[int, list[str]]] = {}
         self.ways: Counter[str] = Counter()
-        self.versions: Counter[str] = Counter()
 
     def add(self, record: Record) -> None:
         self.students += 1
@@ -138,9 +132,6 @@ class _Assignment:
             self.ways[
                 ("WEAK: " if isolation.weak else "") + (", ".join(isolation.layers) or "none")
             ] += 1
-        self.versions[
-            ", ".join(f"{name} {version}" for name, version in record.software.items())
-        ] += 1
 
     @property
     def numbers(self) -> dict[str, int]:
@@ -167,12 +158,16 @@ def write_all(store: Store) -> Iterator[str]:
         ).add(record)
         names.update(dict.fromkeys(record.marks))
     refused = refused_of(store)
-    for name, rows in (
-        ("grades.csv", grades(store.all(), list(names), term)),
-        ("undecided.csv", lines(UNDECIDED, _undecided_of(store.all()))),
-    ):
-        if kept := store.write_table(name, rows):
-            yield f"Somebody had changed {name}, so we kept that table as {kept}. {READS[name]}"
+    yield from store.write_table(
+        "grades.csv",
+        grades(store.all(), list(names), term),
+        "No command reads marks from it: change them with `coursework review`.",
+    )
+    yield from store.write_table(
+        "undecided.csv",
+        lines(UNDECIDED, _undecided_of(store.all())),
+        "Its decisions count once you give it to `coursework merge`.",
+    )
     write(store.folder / "refused.csv", table(("file", "student", "why"), map(astuple, refused)))
     write(
         store.folder / "report.html",
@@ -348,7 +343,6 @@ def _deeds() -> dict[str, str]:
 def report(classes: Mapping[str, _Assignment], refused: Sequence[Refused]) -> str:
     """Return the page on the class."""
     ways = sum((assignment.ways for assignment in classes.values()), Counter())
-    versions = sum((assignment.versions for assignment in classes.values()), Counter())
     return page(
         "report.html",
         classes=[
@@ -357,7 +351,6 @@ def report(classes: Mapping[str, _Assignment], refused: Sequence[Refused]) -> st
         ],
         refused=refused,
         ways=sorted(ways.items()),
-        versions=sorted(versions.items()),
         parts=PARTS,
         feedback_of=feedback_of,
     )
