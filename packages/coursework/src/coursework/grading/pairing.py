@@ -448,7 +448,7 @@ def put_renamed_aside(
         (record.student, record.assignment, {(each.file, each.sha256) for each in record.notebooks})
         for record in store.all()
     ]
-    known = {record[:2] for record in records}
+    known = {(student, assignment) for student, assignment, _ in records}
     # Nobody whom the term still knows by name was renamed.
     named = {
         *term.groups,
@@ -456,11 +456,11 @@ def put_renamed_aside(
         *(term.roster.people if term.roster else ()),
     }
     absent = [
-        record
-        for record in records
-        if record[:2] not in present
-        and record[0] not in named
-        and not refused & {file for file, _ in record[2]}
+        (student, assignment, files)
+        for student, assignment, files in records
+        if (student, assignment) not in present
+        and student not in named
+        and not refused & {file for file, _ in files}
     ]
     owners: dict[tuple[str, frozenset[str]], list[Work]] = {}
     for submission in work if absent else ():
@@ -471,7 +471,7 @@ def put_renamed_aside(
         owners.get((assignment, frozenset(digest for _, digest in files)), [])
         for _, assignment, files in absent
     ]
-    incomplete = {record[1] for record, fitting in zip(absent, equal) if not fitting}
+    incomplete = {assignment for (_, assignment, _), fitting in zip(absent, equal) if not fitting}
     for (student, assignment, files), fitting in zip(absent, equal):
         # Prefer, among equal notebooks, those still in their place: then a roster has renamed the
         # student.

@@ -115,10 +115,8 @@ def from_table(file: Any, kind: Any, where: str, value: object, most: float = ma
         }
     if origin is tuple:
         what = "a list of tables" if is_dataclass(arguments[0]) else "a list"
-        return tuple(
-            from_table(file, arguments[0], where, part)
-            for part in file.of(list, what, where, value)
-        )
+        parts = file.of(list, what, where, value)
+        return tuple(from_table(file, arguments[0], where, part) for part in parts)
     if NoneType in arguments and len(arguments) == 2:
         return from_table(file, arguments[0], where, value, most)
     return file.leaf(kind, where, value, most)

@@ -242,13 +242,13 @@ class Class:
         )
 
     def is_shown(self, cluster: Cluster, what: str) -> bool:
-        if what in ("appeals", "earlier"):
-            if what == "appeals":
-                return any(
-                    appeal.is_open
-                    for record in cluster.members
-                    for appeal in self.appeals(cluster, record)
-                )
+        if what == "appeals":
+            return any(
+                appeal.is_open
+                for record in cluster.members
+                for appeal in self.appeals(cluster, record)
+            )
+        if what == "earlier":
             return any(self.earlier(cluster, record) for record in cluster.members)
         if what == "waiting":
             return self.waits(cluster) > 0
@@ -362,10 +362,8 @@ class _Page(web.RequestHandler):
         if not hmac.compare_digest(self.path_args[0].encode(), settings["secret"].encode()):
             raise web.HTTPError(404)
         if self.request.method != "GET":
-            origin, site = (
-                self.request.headers.get("Origin"),
-                self.request.headers.get("Sec-Fetch-Site"),
-            )
+            origin = self.request.headers.get("Origin")
+            site = self.request.headers.get("Sec-Fetch-Site")
             if origin not in settings["origins"] or site not in (None, "same-origin"):
                 raise web.HTTPError(403, "another page")
 
@@ -451,7 +449,6 @@ class _Answer(_Page):
         judged = cluster.mark.judged
         students = {member.student for member in cluster.members}
         lines = graded.lines(cluster, record)
-        worths = graded.standing.worths
         self.show(
             "answer.html",
             cluster=cluster,
@@ -506,7 +503,7 @@ class _Answer(_Page):
                     line,
                     worth,
                     used,
-                    worths[key].id if (key := (cluster.question, line)) in worths else NONE,
+                    self.worth_in_force(cluster, line) or NONE,
                 )
                 for line, worth, _, used in lines
             ],
@@ -548,13 +545,9 @@ class _Answer(_Page):
         """Enter or take back a decision on a cluster or one answer; return whether to stay."""
         graded, who, worth = self.graded, self.settings["grader"], cluster.mark.worth
         # The button beside the field for other points has no value of its own.
-        only, said = (
-            self.get_argument("only", ""),
-            self.get_argument("credit") or self.get_argument("given"),
-        )
-        seen = dict(
-            zip(range(len(cluster.members)), self.get_argument("seen", "").split(), strict=False)
-        )
+        said = self.get_argument("credit") or self.get_argument("given")
+        only = self.get_argument("only", "")
+        seen = dict(enumerate(self.get_argument("seen", "").split()))
         members = [
             (place, member)
             for place, member in enumerate(cluster.members)
@@ -611,9 +604,8 @@ class _Answer(_Page):
         if not number.isdecimal() or int(number) >= len(cluster.members):
             raise web.HTTPError(400, "no such student")
         record, state = cluster.members[int(number)], self.get_argument("state")
-        of = {appeal.id: appeal for appeal in self.graded.appeals(cluster, record)}.get(
-            self.get_argument("of", "")
-        )
+        appeals = {appeal.id: appeal for appeal in self.graded.appeals(cluster, record)}
+        of = appeals.get(self.get_argument("of", ""))
         if bool(of) != (state in (UNDER_REVIEW, REJECTED)):
             raise web.HTTPError(400, "no such step")
         try:

@@ -107,18 +107,15 @@ class Marks:
                 f"There are no marks{named} in {store.folder}"
                 + (f" as of {as_of:%Y-%m-%d %H:%M}." if as_of else ".")
             )
-        # A student who was renamed has a record that was set aside.
-        aside = store.folder / "put-aside"
-        if lost := [
-            key
-            for key in self.given
-            if not (place := store.place(*key)).exists()
-            and not (aside / place.relative_to(store.records)).exists()
-        ]:
-            raise CannotExport(
-                f"{lost[0][0]}'s record for {lost[0][1]} is missing from {store.records}, "
-                "although it has been graded. Grade again first."
-            )
+        for student, graded in self.given:
+            place = store.place(student, graded)
+            # A student who was renamed has a record that was set aside.
+            aside = store.folder / "put-aside" / place.relative_to(store.records)
+            if not place.exists() and not aside.exists():
+                raise CannotExport(
+                    f"{student}'s record for {graded} is missing from {store.records}, although it "
+                    "has been graded. Grade again first."
+                )
         self.assignments = sorted({record.assignment for record in self.records})
         self.students: dict[str, list[Record]] = {}
         for record in self.records:
@@ -166,14 +163,9 @@ class Marks:
             if result.state == "missing" and about and about.due
         ]
 
-    @property
-    def damaged(self) -> list[str]:
-        """The students who are known to have handed in only files that we did not grade."""
-        return [student for (student, _), result in self.results.items() if result.state == DAMAGED]
-
-    @property
-    def excused(self) -> list[str]:
-        return [student for (student, _), result in self.results.items() if result.state == EXCUSED]
+    def in_state(self, state: str) -> list[str]:
+        """Return the students whose result for the one assignment is in a state."""
+        return [student for (student, _), result in self.results.items() if result.state == state]
 
     def mark(self, student: str) -> Given:
         """Return the student's mark for the one assignment."""
@@ -267,7 +259,7 @@ def _split(text: str, delimiter: str) -> list[tuple[list[Field], str]]:
     lines: list[tuple[list[Field], str]] = []
     fields: list[Field] = []
     place = 0
-    while match := pattern.match(text, place) if place < len(text) else None:
+    while place < len(text) and (match := pattern.match(text, place)):
         written, end = match.groups()
         says = (
             written[1 : written.rindex('"')].replace('""', '"')
@@ -549,18 +541,16 @@ def _written_before(marks: Marks, assignment: str, header: str) -> dict[str, lis
 
 def _why_not(book: Gradebook, system: System, marks: Marks, line: int, student: str) -> str:
     """Return why a student's cell is not filled, as the key of a heading, or an empty string."""
-    if student in marks.damaged:
+    if student in marks.in_state(DAMAGED):
         return "damaged"
-    if student in marks.excused:
+    if student in marks.in_state(EXCUSED):
         return "excused"
     if student not in marks.missing and marks.mark(student).undecided:
         return "waiting"
-    return (
-        "closed"
-        if system.name == "Moodle"
-        and book.says(line, book.column("grade can be changed")).casefold() == book.no
-        else ""
-    )
+    may_change = book.says(line, book.column("grade can be changed"))
+    if system.name == "Moodle" and may_change.casefold() == book.no:
+        return "closed"
+    return ""
 
 
 def _scaled(marks: Marks, student: str, out_of: float | None) -> float:
@@ -667,7 +657,12 @@ def _match(
     several: list[str] = []
     everybody = {
         student: marks.identity(student)
-        for student in (*marks.students, *marks.missing, *marks.damaged, *marks.excused)
+        for student in (
+            *marks.students,
+            *marks.missing,
+            *marks.in_state(DAMAGED),
+            *marks.in_state(EXCUSED),
+        )
     }
     # The roster may have come from another assignment, whose participants Moodle numbers otherwise.
     anew = system.name == "Moodle" and not any(

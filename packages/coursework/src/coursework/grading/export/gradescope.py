@@ -16,7 +16,6 @@ import sys
 import tempfile
 from collections import deque
 from collections.abc import Sequence
-from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
@@ -26,7 +25,6 @@ from ...authoring.source import files_of
 from ..judging.secret import FILE as SECRET
 from ..judging.secret import secret_beside
 from ..judging.term import FILE, term_of
-from ..reading import AsJson
 from ..store import write
 from ..versions import folders
 
@@ -152,21 +150,6 @@ def requirements() -> list[str]:
 # --- the code that runs there -------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class User(AsJson):
-    """Gradescope's data about a student."""
-
-    email: str
-    name: str
-
-
-@dataclass(frozen=True)
-class Submission(AsJson):
-    """Gradescope's data about a submission."""
-
-    users: tuple[User, ...]
-
-
 def run(home: Path = HOME) -> None:
     """Grade the submission of one student, or of a group, and write its results.
 
@@ -182,13 +165,13 @@ def run(home: Path = HOME) -> None:
     source = home / "source"
     term = term_of(source)
     (assignment,) = term.assignments
-    about = home / "submission_metadata.json"
-    user, *_ = Submission.from_json(json.loads(about.read_text("utf8")), str(about)).users
-    student = user.email
+    submission = json.loads((home / "submission_metadata.json").read_text("utf8"))
+    user = submission["users"][0]
+    student: str = user["email"]
     results = home / "results" / "results.json"
     if term.roster:
         known_student, why = term.roster.find(
-            (("email", user.email), ("own", user.email), ("name", user.name))
+            (("email", user["email"]), ("own", user["email"]), ("name", user["name"]))
         )
         if known_student is None:
             return _say(

@@ -31,14 +31,12 @@ class Contracts:
     def __init__(self, folder: str | Path) -> None:
         self.folder = Path(folder, "contracts")
         self._known: dict[str, Contract] = {}
-        self._kept: set[str] = set()
 
     def keep(self, contract: Contract) -> None:
         """Store a question, readable by this user only since it contains the right answers."""
         path = self._path(contract.version)
-        if contract.version not in self._kept and not path.exists():
+        if not path.exists():
             write(path, json.dumps(contract.as_json(), ensure_ascii=False), private=True)
-        self._kept.add(contract.version)
 
     def of(self, version: str) -> Contract | None:
         """Return the question of a version, or ``None`` if it was not stored."""
@@ -125,13 +123,9 @@ def changed_since(decided: Decision | None, record: Record, contracts: Contracts
         return ""
     if decided.answer != digest_of_answer(record, decided.question):
         return "answer"
-    return (
-        ""
-        if judged_alike(
-            contracts.of(decided.contract), contracts.of(record.marks[decided.question].version)
-        )
-        else "question"
-    )
+    then = contracts.of(decided.contract)
+    now = contracts.of(record.marks[decided.question].version)
+    return "" if judged_alike(then, now) else "question"
 
 
 def case_of(

@@ -13,11 +13,11 @@ import signal
 import traceback
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
-from types import TracebackType
-from typing import Any, NoReturn, Self
+from typing import Any, NoReturn
 
 from ..record import Mark, Record
 from ..workers import ends_with
@@ -34,7 +34,7 @@ MOST_MEMORY = 1 << 30
 LONGEST_SILENCE = 60 * MOST_SECONDS
 
 
-class Judge:
+class Judge(AbstractContextManager["Judge"]):
     """A judge of records. Its process starts when there is something to judge.
 
     Parameters
@@ -56,15 +56,7 @@ class Judge:
         self.process: tuple[int, Connection] | None = None
         self.of = os.getpid()
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.end()
 
     def marks(self, record: Record) -> dict[str, Mark]:

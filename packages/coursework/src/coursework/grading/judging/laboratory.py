@@ -205,8 +205,16 @@ def move_of(given: Given, record: Record, why: str) -> Move | None:
             )
     if not changes:
         return None
-    key, points = (given.student, given.assignment), (given.points, given.worth)
-    return Move(*key, *points, record.points, record.worth, why, changes)
+    return Move(
+        given.student,
+        given.assignment,
+        given.points,
+        given.worth,
+        record.points,
+        record.worth,
+        why,
+        changes,
+    )
 
 
 @dataclass

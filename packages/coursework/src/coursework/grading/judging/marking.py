@@ -205,17 +205,17 @@ def load_questions(
     bytes of the notebook, those of the files beside it, and the versions of the software.
     """
     places: dict[Path, Path] = {}
+    ours = hashlib.sha256(json.dumps(software()).encode() + secret).digest()
     for path in map(Path, paths):
-        ours = hashlib.sha256(json.dumps(software()).encode() + secret).digest()
-        depends = hashlib.sha256(
-            ours + edition.encode() + b"".join(files_of(path).values())
-        ).hexdigest()[:16]
+        sources = b"".join(files_of(path).values())
+        depends = hashlib.sha256(ours + edition.encode() + sources).hexdigest()[:16]
         places[path] = Path(results) / "questions" / f"{path.stem}-{depends}.json"
 
     def work_out(path: Path) -> None:
+        questions = questions_of(path, secret, edition)
         as_json = {
-            name: [contract.as_json() for contract in those]
-            for name, those in questions_of(path, secret, edition).items()
+            name: [contract.as_json() for contract in variants]
+            for name, variants in questions.items()
         }
         write(places[path], json.dumps(as_json, ensure_ascii=False), private=True)
 
@@ -250,11 +250,11 @@ def earlier_variants(
     questions: Mapping[str, Sequence[Contract]], results: Path
 ) -> dict[str, list[Sequence[Contract]]]:
     """Return earlier sets of variants that differ from today's, newest first; store today's."""
-    path, lists = results / VARIANTS, dict[str, tuple[tuple[Contract, ...], ...]]()
+    path = results / VARIANTS
+    lists: dict[str, tuple[tuple[Contract, ...], ...]] = {}
     if path.exists():
-        lists |= by_name(many(many(Contract.from_json)))(
-            json.loads(path.read_text("utf8")), str(path)
-        )
+        read_lists = by_name(many(many(Contract.from_json)))
+        lists = read_lists(json.loads(path.read_text("utf8")), str(path))
     earlier: dict[str, list[Sequence[Contract]]] = {}
     before = dict(lists)
     for name, variants in questions.items():
@@ -373,9 +373,9 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
     ):
         said = "This is right for numbers other than yours."
         reply = Reply(name, "wrong", OTHER_NUMBERS, [said])
-    share = {"correct": 1, "wrong": contract.credit.get(reply.note, 0) if reply.note else 0}.get(
-        reply.outcome, 0
-    )
+    share: float = 1 if reply.outcome == "correct" else 0
+    if reply.outcome == "wrong" and reply.note:
+        share = contract.credit.get(reply.note, 0)
     if reply.outcome == "wrong" and contract.partial and reply.note != OTHER_NUMBERS:
         right, parts, beyond_chance = parts_right(contract, text)
         share = max(share, beyond_chance)
@@ -416,10 +416,8 @@ def parts_right(contract: Contract, text: str) -> tuple[int, int, float]:
     """
     kind, right = contract.question.kind, contract.partial or ""
     if kind == "order":
-        given, places = (
-            text.split(PARTS["order"]),
-            {part: k for k, part in enumerate(right.split(PARTS["order"]))},
-        )
+        given = text.split(PARTS["order"])
+        places = {part: place for place, part in enumerate(right.split(PARTS["order"]))}
         good = [
             places[first] < places[second] for first, second in itertools.combinations(given, 2)
         ]
@@ -453,10 +451,9 @@ def mark_with_siblings(
     """
     known = remembered.get(name)
     own_mark = mark(name, question, answers.get(name, NOT_RUN), finished, limited)
-    own_mark, had = (
-        replace(own_mark, tries=known.tries if known else None),
-        known.help if known else "",
-    )
+    had = ""
+    if known:
+        own_mark, had = replace(own_mark, tries=known.tries), known.help
     for sibling, other in question.second_chances.items():
         helped = sibling in remembered and remembered[sibling].help
         if sibling in answers and not helped and (had or own_mark.outcome != "correct"):

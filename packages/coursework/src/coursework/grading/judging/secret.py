@@ -88,15 +88,12 @@ def secret_of(question: AuthoredQuestion, secret: bytes) -> Elsewhere | None:
             elsewhere = _of_function(question, seed)
         else:
             elsewhere = _of_expression(question, seed)
-        if (
-            elsewhere is not None
-            and is_function
-            and all(call in public.calls for call in elsewhere.calls)
+        if elsewhere is not None and (
+            not is_function or any(call not in public.calls for call in elsewhere.calls)
         ):
-            # Prefer calls that no check makes. If the arguments are a few words, there may be none.
-            known, elsewhere = (known or elsewhere, None)
-        if elsewhere is not None:
             return elsewhere
+        # Prefer calls that no check makes. If the arguments are a few words, there may be none.
+        known = known or elsewhere
     return known
 
 

@@ -19,6 +19,7 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from ..reading import from_table
 from ..record import Mark, Record
+from ..store import write
 from ..submissions.intake import Notebook, as_time
 from ..submissions.roster import Roster
 from ..tables import number_of, reason_of
@@ -212,13 +213,9 @@ class Term:
 
     def group_of(self, student: str, assignment: str = "") -> str:
         """Return a student's group, or the student, who works alone in a sitting."""
-        return (
-            student
-            if assignment in self.sittings
-            else next(
-                (name for name, members in self.groups.items() if student in members), student
-            )
-        )
+        if assignment in self.sittings:
+            return student
+        return next((name for name, members in self.groups.items() if student in members), student)
 
     @property
     def sittings(self) -> list[str]:
@@ -320,11 +317,9 @@ class _File:
             return self.moment(where, value)
         if kind is datetime.tzinfo:
             return self.zone
-        return (
-            _times(self.path.parent / self.of(str, "a string", where, value), self.zone)
-            if kind is Times
-            else value
-        )
+        if kind is Times:
+            return _times(self.path.parent / self.of(str, "a string", where, value), self.zone)
+        return value
 
     def unknown(self, where: str, name: str, known: Iterable[str]) -> BadTerm:
         there = f" in {where}" if where else ""
@@ -447,39 +442,40 @@ def new_term(folder: str | Path, sources: Path, roster: str | None) -> str:
     names = [source.stem for source in sorted(sources.glob("*.ipynb")) if source.stem != CHAPTERS]
     if not names:
         raise BadTerm(f"There is no notebook with solutions in {sources}.")
-    place, course = os.path.relpath(roster, folder) if roster else "", course_around(sources)
+    course = course_around(sources)
     _, _, zone = os.path.realpath("/etc/localtime").partition("zoneinfo/")
+    place = _quoted(os.path.relpath(roster, folder)) if roster else ""
+    assignments = "".join(
+        NEW_ASSIGNMENT.format(
+            name=name if re.fullmatch(r"[\w-]+", name, re.A) else _quoted(name),
+            plain=name,
+            title=name.replace("-", " ").capitalize(),
+        )
+        for name in names
+    )
     text = NEW.format(
-        name=json.dumps(
-            course.title if course else Path(folder).resolve().parent.name, ensure_ascii=False
-        ),
-        zone=json.dumps(zone or "UTC"),
-        roster=f"roster = {json.dumps(place, ensure_ascii=False)}"
-        if roster
-        else '# roster = "gradebook.csv"',
-        assignments="".join(
-            NEW_ASSIGNMENT.format(
-                name=name
-                if re.fullmatch(r"[\w-]+", name, re.A)
-                else json.dumps(name, ensure_ascii=False),
-                plain=name,
-                title=name.replace("-", " ").capitalize(),
-            )
-            for name in names
-        ),
-        names=json.dumps(names, ensure_ascii=False)[1:-1],
+        name=_quoted(course.title if course else Path(folder).resolve().parent.name),
+        zone=_quoted(zone or "UTC"),
+        roster=f"roster = {place}" if roster else '# roster = "gradebook.csv"',
+        assignments=assignments,
+        names=", ".join(map(_quoted, names)),
         first=names[0],
     )
     # Read the roster first, so that a bad one does not leave a term that nobody can use.
     people = list(Roster(roster).people) if roster else []
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    path.write_text(text, "utf8")
+    write(path, text)
     read_term(path)
     return f"We wrote {path}. Read it, and make your choices." + (
         f" The roster has {number_of(len(people), 'student')}, with IDs such as {people[0]!r}."
         if people
         else ""
     )
+
+
+def _quoted(text: str) -> str:
+    """Return text as a string of TOML, which JSON's strings are, too."""
+    return json.dumps(text, ensure_ascii=False)
 
 
 def read_term(path: str | Path) -> Term:
@@ -494,12 +490,10 @@ def read_term(path: str | Path) -> Term:
     try:
         said: dict[str, object] = tomllib.loads(path.read_text("utf-8-sig"))
     except (OSError, ValueError) as error:
-        advice = (
-            ". Create it with `coursework term new`."
-            if isinstance(error, FileNotFoundError)
-            else ". Write a date as 2026-10-05T23:59:00, and put text in quotation marks."
-        )
-        raise BadTerm(f"{path}: {reason_of(error)}{advice}") from None
+        advice = "Write a date as 2026-10-05T23:59:00, and put text in quotation marks."
+        if isinstance(error, FileNotFoundError):
+            advice = "Create it with `coursework term new`."
+        raise BadTerm(f"{path}: {reason_of(error)}. {advice}") from None
     file = _File(path)
     if zone := said.get("time-zone"):
         try:
@@ -786,18 +780,19 @@ def result_of(
     know which assignment the file was for, so every missing one stays open.
     """
     # A member of a group may have worked alone.
-    about, group = (
-        term.assignments.get(name, Assignment()),
-        record.student if record else term.group_of(student, name),
-    )
+    group = record.student if record else term.group_of(student, name)
     due = term.due(group, name)
     state, points, late, penalty, when = "counted", 0.0, False, 0.0, None
     if record is None:
-        not_due = name not in worth or (due is not None and now <= due)
-        damaged = name in worth and not {student, group}.isdisjoint(refused)
-        state = DAMAGED if damaged else "not due" if not_due else "missing"
+        state = "missing"
+        if name not in worth or (due is not None and now <= due):
+            state = "not due"
+        if name in worth and not {student, group}.isdisjoint(refused):
+            state = DAMAGED
     else:
-        points, when = record.points, _handed_in(student, record, about, term.time_zone)
+        points = record.points
+        about = term.assignments.get(name, Assignment())
+        when = _handed_in(student, record, about, term.time_zone)
         if when is None:
             extended = any(
                 name in term.extensions.get(member, {}) for member in term.members(group)

@@ -359,13 +359,8 @@ class Layout:
             rest = named.sub("", stem).strip(" _-.()")
             if named.search(stem) and rest:
                 # The same name written differently is a separate claim.
-                return Claim(
-                    _clean(rest),
-                    _own(rest),
-                    f"files {named.sub('*', stem)}",
-                    parts[0],
-                    reply=f"{stem}-",
-                )
+                source = f"files {named.sub('*', stem)}"
+                return Claim(_clean(rest), _own(rest), source, parts[0], reply=f"{stem}-")
         return Claim(_clean(stem), _own(stem), f"file {stem}", parts[0], reply=f"{stem}-")
 
 

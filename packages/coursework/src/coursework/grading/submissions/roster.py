@@ -32,11 +32,11 @@ COLUMNS = {
     "github": ("github", "github_username", "github username"),
     "handed in as": ("handed in as",),
 }  # fmt: skip
-FIRST, LAST = (
-    ("first name", "first_name", "firstname", "vorname", "prénom", "nombre", "voornaam"),
-    ("last name", "last_name", "lastname", "surname")
-    + ("nachname", "nom de famille", "apellido(s)", "achternaam"),
-)
+FIRST = ("first name", "first_name", "firstname", "vorname", "prénom", "nombre", "voornaam")
+LAST = (
+    "last name", "last_name", "lastname", "surname", "nachname", "nom de famille", "apellido(s)",
+    "achternaam",
+)  # fmt: skip
 WORDS = {
     "own": "the name of the folder",
     "name": "the full name",
@@ -243,9 +243,10 @@ def cells_in(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
         for cells in reader:
             rows.append((reader.line_num, list(map(str.strip, cells))))
     except csv.Error as error:
+        line = rows[-1][0] + 1 if rows else 1
         raise BadRoster(
-            f"{path}, line {rows[-1][0] + 1 if rows else 1}: we cannot read this line ({error}). "
-            "Perhaps a quotation mark opens a cell there and nothing closes it."
+            f"{path}, line {line}: we cannot read this line ({error}). Perhaps a quotation mark "
+            "opens a cell there and nothing closes it."
         ) from None
     return [name.casefold() for name in (rows.pop(0)[1] if rows else [])], rows
 
