@@ -54,7 +54,7 @@ def full(*arguments, **options):
 
 def test_a_full_disk_is_said_in_a_sentence_and_the_next_run_goes_on(course, monkeypatch, capsys):
     command = ["grade", str(course / "in"), "--out", str(course / "out"), "--solutions",
-               str(course / "course" / "solutions")]  # fmt: skip
+               str(course / "course" / "solutions"), "--workers", "1"]  # fmt: skip
     with monkeypatch.context() as patched:
         patched.setattr(Store, "stage", full)
         with pytest.raises(SystemExit, match="coursework grade: No space left on device") as caught:
