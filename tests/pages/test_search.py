@@ -170,6 +170,7 @@ def test_names_slips_and_words_of_programs_are_understood(places_found):
         "eular angels": "chapters/euler-angles",
         "eulre angles": "chapters/euler-angles",  # letters exchanged
         "oiler angles": "chapters/euler-angles",  # by ear
+        "quaterion": "chapters/unit-quaternions#chaining",  # as a question that the search knows
         # no rotation vector
         "rotate a vector by a quaternion": "chapters/quaternions-in-full#turning-a-vector",
         "rotation between two ve": "chapters/axis-and-angle#from-one-direction-to-another",

@@ -36,7 +36,7 @@
         section: headingOf(document.getElementById(item.dataset.section)?.closest("section")),
       }));
 
-  let now = -1, began = 0, place = 0, speaker = null, typed = "", words = "", unseen = [];
+  let now = -1, began = 0, place = 0, speaker = null, typed = "", words = "", unseen = [], ticking;
   const line = make("div", { className: "lecture-line", tabIndex: -1 });
   const counter = make("button", { type: "button", title: "Outline and more (key O)" });
   const clock = make("span", { className: "lecture-clock", hidden: true });
@@ -259,7 +259,6 @@
     clock.textContent = time();
     if (speaker && !speaker.closed) speaker.document.querySelector("p.time").textContent = time();
   };
-  let ticking;
 
   // ---- outline, with every action of the keys for those who have no keyboard ----
   const KEYS = [

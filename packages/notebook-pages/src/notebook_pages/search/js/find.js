@@ -146,6 +146,8 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
 
   // Rewrite a question in the words of the book: joined or split as in the book, and without typing errors.
   const isKnown = (word) => forms.has(word) || size(stem(word)) > 2;
+  // Readers' phrases contain typing errors, too.
+  const isSlip = (word) => word.length > 6 && size(stem(word)) < 3 && [...forms.fuzzyGet(word, 1).keys()].some((form) => size(stem(form)) > 20);
   const widest = (list) => list.reduce((best, word) => (size(stem(word)) > size(stem(best)) ? word : best));
   function mended(text) {
     const given = read(text.replace(/([a-z])(?=[A-Z][a-z])/g, "$1 ")).all, found = [];
@@ -154,7 +156,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
       const put = () => {
         const two = [one, next];
         if (next && !two.some(isLeftOut) && !two.every(isKnown) && isKnown(one + next)) return k += 1, [one + next];
-        if (isKnown(one) || one.length < 4 || isLeftOut(one) || forms.atPrefix(one).size) return [one];
+        if (!isSlip(one) && (isKnown(one) || one.length < 4 || isLeftOut(one) || forms.atPrefix(one).size)) return [one];
         const letters = /^([a-z]{3,})\d\w*$/.exec(one)?.[1]; // such as Vector3
         if (letters) return [letters];
         const cut = [...one].map((_, j) => [one.slice(0, j), one.slice(j)])
