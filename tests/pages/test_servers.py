@@ -16,7 +16,7 @@ from playwright.sync_api import expect
 from test_live import ENDLESS, QUIET
 from test_site import violations
 
-from notebook_pages import finish, install
+from notebook_pages import finish, install, serve
 
 POLICY_HEADER = "Content-Security-Policy"
 SIZE = (
@@ -142,17 +142,8 @@ def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
 def test_page_of_a_wrong_address_leads_home_from_any_folder(page, tmp_path, colours):
     (tmp_path / "courses").mkdir()
     (tmp_path / "courses" / "book").symlink_to(HTML, target_is_directory=True)
-
-    class WithPageOfWrongAddress(Silent):
-        def send_error(self, code, *arguments):
-            content = (HTML / "404.html").read_bytes()
-            self.send_response(code)
-            self.send_header("Content-Type", "text/html")
-            self.send_header("Content-Length", str(len(content)))
-            self.end_headers()
-            self.wfile.write(content)
-
-    with serving(WithPageOfWrongAddress, tmp_path) as root:
+    (tmp_path / "404.html").symlink_to(HTML / "404.html")
+    with serving(serve.Handler, tmp_path) as root:
         page.emulate_media(color_scheme=colours)
         page.goto(f"{root}courses/book/chapters/no/such-page.html")
         home = f"{root}courses/book/index.html"

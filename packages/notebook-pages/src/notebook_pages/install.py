@@ -20,11 +20,13 @@ KEPT = {".html", ".js", ".css", ".woff2", ".svg", ".png", ".webmanifest", ".ipyn
 
 
 def write_manifest(site, title):
-    icons = [{"src": "_static/favicon.svg", "sizes": "any", "type": "image/svg+xml"}]
-    for size in SIZES:
-        icons.append(
+    icons = [
+        {"src": "_static/favicon.svg", "sizes": "any", "type": "image/svg+xml"},
+        *(
             {"src": f"_static/icon-{size}.png", "sizes": f"{size}x{size}", "type": "image/png"}
-        )
+            for size in SIZES
+        ),
+    ]
     manifest = {
         "name": title, "short_name": title.split()[0], "start_url": "./index.html", "scope": "./",
         "id": "./", "display": "minimal-ui", "background_color": "#fdfcfa",

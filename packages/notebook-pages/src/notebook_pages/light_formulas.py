@@ -151,10 +151,10 @@ def spread(boxes):
         parts += spread(box.inside) if isinstance(box, Box) and box.is_group else [box]
     free = [isinstance(box, Box) and box.classes == ["nulldelimiter"] for box in parts]
     for place, box in enumerate(parts):
-        if isinstance(box, Box) and box.classes == ["mfrac"]:
-            if free[place - 1 : place] == free[place + 1 : place + 2] == [True]:
-                parts[place - 1] = parts[place + 1] = ""
-                box.classes = ["frac"]
+        is_fraction = isinstance(box, Box) and box.classes == ["mfrac"]
+        if is_fraction and free[place - 1 : place] == free[place + 1 : place + 2] == [True]:
+            parts[place - 1] = parts[place + 1] = ""
+            box.classes = ["frac"]
     return parts
 
 

@@ -288,8 +288,10 @@ def running_heads(chapters):
     rules = []
     for _, page, text in chapters:
         title = heading(text.h2).replace("\\", "\\\\").replace('"', '\\"')
-        rules.append(f'@page {place(page)} {{ @top-right {{ content: "{title}"; }} }}')
-        rules.append(f"#{place(page)} {{ page: {place(page)}; }}")
+        rules += [
+            f'@page {place(page)} {{ @top-right {{ content: "{title}"; }} }}',
+            f"#{place(page)} {{ page: {place(page)}; }}",
+        ]
     return "\n".join(rules)
 
 
@@ -333,12 +335,12 @@ def document(site, title):
     share_styles(texts)
     for *_, text in chapters:
         lower_headings(text)
-    body = [cover]
-    body.append(
+    body = [
+        cover,
         '<nav class="list-of-contents" '
-        f'aria-label="Contents"><h1>Contents</h1><ol>{contents_list(chapters)}</ol></nav>'
-    )
-    body.append(str(front))
+        f'aria-label="Contents"><h1>Contents</h1><ol>{contents_list(chapters)}</ol></nav>',
+        str(front),
+    ]
     for caption, _, text in chapters:
         if caption:
             text.insert(0, BeautifulSoup(f'<h1 class="part">{escape(caption)}</h1>', "html.parser"))

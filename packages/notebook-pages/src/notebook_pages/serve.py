@@ -38,6 +38,13 @@ class Handler(SimpleHTTPRequestHandler):
             self.send_header("Cross-Origin-Resource-Policy", "cross-origin")
         super().end_headers()
 
+    def send_error(self, code, *arguments, **more):
+        """Send the book's own page for an address that does not exist."""
+        page = Path(self.directory, "404.html")
+        if code == 404 and page.is_file():
+            self.error_message_format = page.read_text("utf8").replace("%", "%%")
+        super().send_error(code, *arguments, **more)
+
     def log_message(self, *arguments):
         """Log nothing."""
 
