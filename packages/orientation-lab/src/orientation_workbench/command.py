@@ -7,6 +7,7 @@ import re
 import signal
 import sys
 from contextlib import suppress
+from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
 
@@ -186,8 +187,15 @@ def _declared(words):
     )
     for word in words:
         if word not in groups:
+            near = [
+                value
+                for value in groups
+                if get_close_matches(word.casefold(), [value, *value.casefold().split()], 1, 0.7)
+            ]
             raise ValueError(
-                f"{word!r} is unknown: give a kind of description ({', '.join(COUNTS)}), a "
+                f"{word!r} is unknown"
+                + "".join(f" (did you mean {value!r}?)" for value in near[:1])
+                + f": give a kind of description ({', '.join(COUNTS)}), a "
                 f"convention such as 'zyx' or 'degrees', or a direction ({', '.join(WAYS)})"
             )
     return {groups[word]: word for word in words}
@@ -197,12 +205,11 @@ def _explain(chosen):
     try:
         if not chosen.noise >= 0:
             raise ValueError(f"--noise is {chosen.noise:g}: it must be at least 0 degrees")
-        texts = [_given(chosen.first), _given(chosen.second)]
-        declared = [_declared(words) for words in (chosen.first_is, chosen.second_is)]
         explanation = explain(
-            *texts,
-            first_declared=declared[0],
-            second_declared=declared[1],
+            _given(chosen.first),
+            _given(chosen.second),
+            first_declared=_declared(chosen.first_is),
+            second_declared=_declared(chosen.second_is),
             first_program=chosen.first_program,
             second_program=chosen.second_program,
             noise=math.radians(chosen.noise),

@@ -20,6 +20,8 @@ vector; ``printed`` is the order in which it prints a quaternion, if it takes it
 counts as forward and north as left.
 """
 
+from difflib import get_close_matches
+
 FLU, FRD, RDF = (
     ["forward", "left", "up"],
     ["forward", "right", "down"],
@@ -455,14 +457,17 @@ def program_named(words):
         If no program or several programs match.
     """
     given = words.casefold()
-    exact = [program for program in PROGRAMS if program.casefold() == given]
-    matches = exact or [program for program in PROGRAMS if f" {given}" in f" {program.casefold()}"]
+    matches = [program for program in PROGRAMS if program.casefold() == given] or [
+        program for program in PROGRAMS if f" {given}" in f" {program.casefold()}"
+    ]
     if len(matches) != 1:
-        which = ", ".join(matches or PROGRAMS)
+        near = get_close_matches(given, " ".join(PROGRAMS).casefold().split(), 1, 0.7)
         raise ValueError(
-            f"{words!r} matches several programs: {which}"
+            f"{words!r} matches several programs: {', '.join(matches)}"
             if matches
-            else f"unknown program {words!r}: {which}"
+            else f"unknown program {words!r}"
+            + "".join(f" (did you mean {word}?)" for word in near)
+            + f": {', '.join(PROGRAMS)}"
         )
     return matches[0]
 

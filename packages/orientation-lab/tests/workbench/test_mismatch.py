@@ -574,6 +574,8 @@ def test_the_command(tmp_path, capsys):
         (["1 0 0 0", "1 0 0 0", "--noise", "-3"], "--noise is -3: it must be at least 0 degrees"),
         (["1 0 0 0", "1 0 0 0", "--noise", "nan"], "--noise is nan: it must be at least 0 degrees"),
         (["1 0 0 0", "1 0 0 0", "--first", "Maya"], "unknown program"),
+        (["1 0 0 0", "1 0 0 0", "--first", "ros2"], "'ros2' (did you mean ros?): "),
+        (["1 0 0 0", "1 0 0 0", "--first-is", "eulr"], "(did you mean 'Euler angles'?): "),
         (["1 0 0 0", "1 0 0 0", "--first-is", "sideways"], "give a kind of description"),
     ],
 )

@@ -415,7 +415,7 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
         (["walk.csv", "--rate", "-5"], "the rate is -5"),
         (["walk.csv", "--rate", "0"], "the rate is 0"),
         (["walk.csv", "--columns", "gyroscope=2-4:furlongs"], "'furlongs' is not a unit"),
-        (["walk.csv", "--html", "none/report.html"], "a folder that exists"),
+        (["walk.csv", "--html", "none/report.html"], "there is no folder"),
         (["walk.csv", "--csv", str(tmp_path / "walk.csv")], "not the recording"),
         (["walk.csv", "--convention", "zyx"], "invalid choice: 'zyx'"),
     ):

@@ -36,7 +36,12 @@ def run(chosen: Namespace) -> int:
             or file.resolve() in (Path(name).resolve() for name in chosen.files)
         ]:
             raise ValueError(
-                f"cannot write {bad[0]}: name a file in a folder that exists, not the recording"
+                f"cannot write {bad[0]}: "
+                + (
+                    "name a file, and not the recording"
+                    if Path(bad[0]).parent.is_dir()
+                    else f"there is no folder {Path(bad[0]).parent}"
+                )
             )
         if shown:
             print("reading", end="", file=sys.stderr, flush=True)
