@@ -100,13 +100,17 @@ def test_keys_work_after_clicks_and_the_page_is_left_whole_where_it_was(opened):
     page.keyboard.press("PageDown")  # and a speaker's remote control continues
     assert step(page) == 7
     page.keyboard.type("3\n")
+    page.reload()
+    page.wait_for_selector("html.lecture")
+    assert step(page) == 3
     page.keyboard.press("F5")  # the button with which a remote control starts its show
     page.wait_for_function("document.fullscreenElement !== null")
     assert step(page) == 3
     page.evaluate("document.exitFullscreen()")
     page.wait_for_function("document.fullscreenElement === null")
     if page.locator(".lecture-bar").count():
-        page.keyboard.press("Escape")
+        page.go_back()
+    expect(page.locator(".lecture-bar")).to_have_count(0)
     page.evaluate("document.querySelectorAll('h2')[3].scrollIntoView({ behavior: 'instant' })")
     before = page.evaluate("[scrollY, document.querySelectorAll('article *').length]")
     begin(page)

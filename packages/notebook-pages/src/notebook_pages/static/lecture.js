@@ -136,8 +136,7 @@
     const shapes = figures.map(shapeOf);
     const shape = shapes.reduce((sum, shape) => sum + shape.shape, 0);
     const panel = shapes.reduce((sum, part) => sum + part.panel, 0);
-    const foot = parseFloat(getComputedStyle(article).paddingBottom);
-    const [wide, high] = [article.clientWidth - 2 * GAP, article.clientHeight - GAP - foot];
+    const [wide, high] = [article.clientWidth - 2 * GAP, article.clientHeight - GAP - parseFloat(getComputedStyle(article).paddingBottom)];
     const area = (width, height) => Math.min(height, Math.max(0, width - panel) / shape) ** 2 * shape;
     // Words may be smaller or in a narrower column for the sake of the drawing, but not by much.
     const worth = ({ width, height, size, tall }) => area(width, height) * size ** 0.8 * (tall ? 0.75 : 1);
@@ -209,6 +208,7 @@
       }
       if (block.matches(".question")) ballot(block);
     }
+    history.replaceState({ lecture: now }, ""); // for a reload
     words = `${now + 1} of ${steps.length}`;
     line.replaceChildren(step.line.cloneNode(true));
     counter.textContent = words;
@@ -333,7 +333,8 @@
     button.setAttribute("aria-pressed", "true");
     article.append(line);
     document.body.append(bar, said, notes, black, menu);
-    show(place > 200 ? Math.max(at, 0) : 0);
+    if (history.state?.lecture === undefined) history.pushState(null, ""); // the browser's Back ends the lecture
+    show(history.state?.lecture ?? (place > 200 ? Math.max(at, 0) : 0));
     tick();
   };
   const end = () => {
@@ -352,7 +353,9 @@
     dispatchEvent(new Event("resize"));
     scrollTo({ top: place, behavior: "instant" });
     button.focus({ preventScroll: true });
+    if (history.state?.lecture !== undefined) history.back();
   };
+  addEventListener("popstate", () => root.classList.contains("lecture") && history.state?.lecture === undefined && end());
   button.addEventListener("click", () => (root.classList.contains("lecture") ? end() : begin()));
 
   // ---- keys, clicks and touches ----

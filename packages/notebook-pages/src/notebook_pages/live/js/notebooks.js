@@ -106,8 +106,7 @@ export function bringTogether(page, copy, originals) {
     const last = agreement[name] ?? original;
     const copyMoved = fingerprint(there) !== last;
     const here = entry ? fingerprint(entry.code.trimEnd()) : original;
-    const pageMoved = here !== last;
-    const pageWins = pageMoved && (!copyMoved || (entry?.at ?? 0) > Date.parse(copy.last_modified));
+    const pageWins = here !== last && (!copyMoved || (entry?.at ?? 0) > Date.parse(copy.last_modified));
     if (pageWins) {
       const source = entry?.code ?? originals?.[name];
       if (!originals || source === undefined) continue;
