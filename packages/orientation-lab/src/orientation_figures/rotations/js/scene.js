@@ -449,7 +449,7 @@ const SHOWS = {
     // The shadow of the second on the first is the cosine. The rest is the sine, which is also laid along the line.
     scene.rod(ZERO, foot, 0.045, 'ink');
     scene.rod(foot, scale(UNIT, second), 0.03, 'accent');
-    if (Math.abs(cosine) > 0.3) scene.label(add(scale(0.7, foot), scale(-0.2, cross(axis, first))), '\\cos\\theta/2', 'ink', scale(0.7, foot));
+    if (Math.abs(cosine) > 0.3) scene.label(add(scale(0.95, foot), scale(-0.2, cross(axis, first))), '\\cos\\theta/2', 'ink', scale(0.95, foot));
     if (Math.abs(sine) > 0.3) scene.label(scale(0.6, add(foot, scale(UNIT, second))), '\\sin\\theta/2', 'accent');
     const laid = UNIT * sine * s.laid;
     if (Math.abs(laid) > 0.05) scene.arrow(ZERO, scale(laid, axis), 'accent', { thick: 0.045 });
