@@ -567,7 +567,7 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     assert (copied / "put-aside" / "b" / "turns.json").exists()
     assert (
         "'b' is now 'somebody'" in shown.getvalue()
-        and "1 decision to the new name" in shown.getvalue()
+        and "and all decisions and appeals are now under the new name" in shown.getvalue()
     )
     handed_on = {decision.student: decision for decision in Journal(copied).by_people}
     assert (handed_on["somebody"].who, handed_on["somebody"].why) == ("Ann", "appeal; was 'b'")

@@ -37,6 +37,17 @@ def test_a_late_notebook_comes_after_the_source_changed(tmp_path):
     assert course.points() == {**dict.fromkeys(before, 0), "fay": 8}
     log = (course.marks / "run.log").read_text()
     assert "not changed, nobody agreed: 'ada', hw2: 8 -> 0" in log and "  moved: 'ada'" in log
+    # A new name does not hide what the next change would cost.
+    course.change("hw2", load=(7, 8))
+    (course.handed_in / "fay").rename(course.handed_in / "fay-king")
+    assert "'fay' is now 'fay-king': we would move" in course.grade("--dry-run")
+    said = course.grade(fails=True)
+    assert "'fay' is now 'fay-king': the record of hw2, its marks" in said
+    assert "1 student would lose: hw2/load." in said and "'fay-king', hw2: 8 -> 0" in said
+    assert course.points()["fay-king"] == 8
+    said = course.run("why", "fay", "hw2", "--marks", "marks", fails=True)
+    assert "'fay' is now 'fay-king': the marks are under that name." in said
+    assert "was 'fay'" in course.run("why", "fay-king", "hw2", "--marks", "marks")
 
 
 def test_the_worth_of_a_question_changes(tmp_path):

@@ -31,8 +31,8 @@ from .pairing import (
     Work,
     demand_a_class,
     demand_own_numbers,
+    follow_renamed,
     pair,
-    put_renamed_aside,
     read,
     say,
     say_other_numbers,
@@ -235,7 +235,7 @@ def grade(
         desk.ask(course, (work.assignment for work in handed_in.work), closing)
         if not as_listed:
             demand_own_numbers(handed_in.work, desk.questions, foreign, desk.term.roster)
-        desk.tell(*put_renamed_aside(desk.store, handed_in, desk.journal, desk.term, dry_run))
+        desk.tell(*follow_renamed(desk.store, handed_in, desk.journal, desk.term, dry_run))
         keys = [(work, key_of(work, desk.asked(work)[0], running)) for work in handed_in.work]
         waiting = [work for work, key in keys if not _is_done(desk.store, work, key)]
         kept, refused = len(keys) - len(waiting), len(handed_in.refused)

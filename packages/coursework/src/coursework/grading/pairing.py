@@ -432,15 +432,15 @@ def demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | N
         )
 
 
-def put_renamed_aside(
+def follow_renamed(
     store: Store, handed_in: HandedIn, journal: Journal, term: Term, dry_run: bool = False
 ) -> Iterator[str]:
-    """Set aside records of students whose very notebooks now belong to another, and report each.
+    """Move records of students whose very notebooks now belong to another, and report each.
 
-    Their folder was renamed, so people's decisions on the answers are copied to the new name. A
-    student whose notebook is still in its place but refused has no new name: the roster lacks the
-    old one. Where others are missing too, the folder may hold only late work, and an equal notebook
-    elsewhere may be a copy, so both marks stay.
+    Their folder was renamed, so their marks and people's decisions go with them. A student whose
+    notebook is still in its place but refused has no new name: the roster lacks the old one. Where
+    others are missing too, the folder may hold only late work, and an equal notebook elsewhere may
+    be a copy, so both marks stay.
     """
     work, refused = handed_in.work, {file.file for file in handed_in.refused}
     present = {(submission.student, submission.assignment) for submission in work}
@@ -492,22 +492,22 @@ def put_renamed_aside(
                 f"move {store.place(student, assignment).parent} to {store.folder}/put-aside."
             )
         elif names:
-            said = f"{student!r} is now {' or '.join(map(repr, names))}: "
+            now = f"{student!r} is now {' or '.join(map(repr, names))}"
             if dry_run:
-                yield f"{said}we would move the record of {assignment}."
-                continue
-            said += (
-                f"we moved the record of {assignment} to {store.put_aside(student, assignment)}."
-            )
-            decisions = [
-                key for key in journal.standing().decisions if key[:2] == (student, assignment)
-            ]
-            if decisions and len(names) == 1:
-                journal.hand_on(student, assignment, names[0])
-                said += f" We also moved {number_of(len(decisions), 'decision')} to the new name."
-            elif decisions:
-                said += (
-                    f" Its decisions ({len(decisions)}) no longer count, because we do not know "
-                    "which of these students they belong to."
+                yield (
+                    f"{now}: we would move the record of {assignment}, and then show who gains and "
+                    "who loses."
                 )
-            yield said
+            elif len(names) == 1:
+                store.rename(student, assignment, names[0])
+                journal.hand_on(student, assignment, names[0])
+                yield (
+                    f"{now}: the record of {assignment}, its marks, and all decisions and appeals "
+                    "are now under the new name."
+                )
+            else:
+                yield (
+                    f"{now}: we moved the record of {assignment} to "
+                    f"{store.put_aside(student, assignment)}. Its marks, decisions and appeals no "
+                    "longer count, because we do not know which of these students they belong to."
+                )

@@ -466,7 +466,7 @@ class Journal:
         old = [
             event
             for event in self.events
-            if isinstance(event, Decision | Appeal)
+            if isinstance(event, Decision | Appeal | Given)
             and (event.student, event.assignment) == (student, assignment)
         ]
         ids = {event.id: secrets.token_hex(8) for event in old}
@@ -477,7 +477,7 @@ class Journal:
                 for field in ("id", "after", "appeal", "undoes")
                 if hasattr(event, field)
             }
-            if isinstance(event, Decision):
+            if isinstance(event, Decision | Given):
                 same["why"] = f"{event.why}; was {student!r}".removeprefix("; ")
             copies.append(replace(event, student=name, **same))
         self.append(copies)
