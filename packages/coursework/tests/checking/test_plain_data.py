@@ -354,6 +354,8 @@ Nothing.__name__, Odd.__name__, Quaint.__name__ = "Nothing" * 10, "Odd" * 15, "Q
 REFUSED = [
     (Nothing(), None, f"type `{('Nothing' * 10)[:40]}` cannot be read. Give a SymPy expression"),
     (3, [[1]], "asks for a function"),
+    (lambda angle: abs, [[1]], "Look at what your function returns. This is a function."),
+    (lambda angle: (yield angle), [[1]], "Define the function with `def`, and let it `return`"),
     ({x: 1, y: 2}, None, "This is a dictionary. Give the value in it"),
     ({"a": 1}, None, "This is a dictionary. Give the value in it"),
     ([{}, {}], None, "One entry is a dictionary"),

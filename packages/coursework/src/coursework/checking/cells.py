@@ -106,10 +106,13 @@ def ends(result: object) -> None:
     if advice := [text for words, text in ADVICE.items() if re.search(words, f"{error}\n{code}")]:
         print(*advice, end="")
     if type(error) is NameError and re.search(rf"(?s)\bcheck\(.*\b{error.name}\b", code):
-        print(
-            f"No cell that you have run sets `{error.name}`. If it is spelled right, run the "
-            "cell that sets it, and then run this check again."
+        remedy = (
+            f"No cell that you have run sets `{error.name}`. If it is spelled right, run the cell "
+            "that sets it"
         )
+        if _outdated.get(error.name) == STOPPED:
+            remedy = f"The cell that sets `{error.name}` stopped with an error. Correct and run it"
+        print(f"{remedy}, and then run this check again.")
 
 
 def outdated() -> list[str]:

@@ -22,6 +22,7 @@ and not as the printed tree. Nothing is simplified. Reading such a table, unlike
 import contextlib
 import dis
 import functools
+import inspect
 import io
 import json
 import math
@@ -440,6 +441,8 @@ class _Writer:
     def result(
         self, function: Callable[[*tuple[object, ...]], object], arguments: Sequence[object]
     ) -> Value:
+        if inspect.isgeneratorfunction(function) or inspect.iscoroutinefunction(function):
+            raise NotPlain("Define the function with `def`, and let it `return` its result.")
         printed = io.StringIO()
         try:
             with contextlib.redirect_stdout(printed):
@@ -447,8 +450,8 @@ class _Writer:
             if _is_blank(returned) and printed.getvalue().strip():
                 return ["printed", printed.getvalue()[:300]]
             return self.value(returned, 0)
-        except NotPlain:
-            raise
+        except NotPlain as error:
+            raise NotPlain(f"Look at what your function returns. {error}") from None
         except (Exception, SystemExit) as error:
             if self.raise_missing and isinstance(error, ModuleNotFoundError):
                 raise
