@@ -45,7 +45,7 @@ def handed_out(folder, files):
         place = folder / name
         place.parent.mkdir(parents=True, exist_ok=True)
         place.write_bytes(data)
-    (folder / "manifest.json").write_text(manifest(files))
+    (folder / "manifest.json").write_text(manifest(files, "Levers"))
 
 
 def test_what_becomes_of_each_file(work, tmp_path):
@@ -175,7 +175,9 @@ def test_an_archive_of_before_takes_no_newer_ones_place(work, tmp_path):
     """Nothing else shows which is older: the package and the files' times are the same."""
     files = [{"a.ipynb": notebook(word), NEW_WHEEL: b""} for word in ("one", "two", "three")]
     first, second, third = (
-        zipped(tmp_path / f"{k}.zip", {**these, "manifest.json": manifest(these).encode()})
+        zipped(
+            tmp_path / f"{k}.zip", {**these, "manifest.json": manifest(these, "Levers").encode()}
+        )
         for k, these in enumerate(files)
     )
     with zipfile.ZipFile(first) as box:
@@ -195,6 +197,10 @@ def test_an_archive_of_before_takes_no_newer_ones_place(work, tmp_path):
             update(older, work)
     with pytest.raises(ArchiveRefused, match="There is no folder .*elsewhere"):
         update(third, tmp_path / "elsewhere")
+    these = {"b.ipynb": notebook("one")}
+    foreign = {**these, "manifest.json": manifest(these, "Gears").encode()}
+    with pytest.raises(ArchiveRefused, match="to the course 'Gears', and this folder to 'Levers'"):
+        update(zipped(tmp_path / "foreign.zip", foreign), work)
 
 
 def test_a_manifest_that_cannot_be_read_knows_nothing_and_a_newer_one_refuses(work, tmp_path):
@@ -225,8 +231,8 @@ def test_the_digest_of_a_notebook_is_of_what_its_cells_say():
     assert len({digest_of("a.ipynb", data) for data in same + different}) == 1 + len(different)
     assert digest_of("a.txt", b"text") == "982d9e3eb996f559e633f4d194def376"
     assert len({digest_of("a.txt", data) for data in same}) == 3
-    assert manifest({"b": b"text", "a": b"text"}) == (
-        '{\n"files": {\n"a": "982d9e3eb996f559e633f4d194def376",\n'
+    assert manifest({"b": b"text", "a": b"text"}, "Levers") == (
+        '{\n"course": "Levers",\n"files": {\n"a": "982d9e3eb996f559e633f4d194def376",\n'
         '"b": "982d9e3eb996f559e633f4d194def376"\n},\n"format": 1\n}\n'
     )
 

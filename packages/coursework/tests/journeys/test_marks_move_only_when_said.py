@@ -45,9 +45,9 @@ def test_a_late_notebook_comes_after_the_source_changed(tmp_path):
     assert "'fay' is now 'fay-king': the record of hw2, its marks" in said
     assert "1 student would lose: hw2/load." in said and "'fay-king', hw2: 8 -> 0" in said
     assert course.points()["fay-king"] == 8
-    said = course.run("why", "fay", "hw2", "--marks", "marks", fails=True)
+    said = course.run("why", "marks", "fay", "hw2", fails=True)
     assert "'fay' is now 'fay-king': the marks are under that name." in said
-    assert "was 'fay'" in course.run("why", "fay-king", "hw2", "--marks", "marks")
+    assert "was 'fay'" in course.run("why", "marks", "fay-king", "hw2")
 
 
 def test_the_worth_of_a_question_changes(tmp_path):
@@ -261,6 +261,16 @@ def test_a_record_that_was_deleted_costs_nobody_a_mark(tmp_path):
     course.grade()
     course.export(book)
     assert course.column(book, "HW 2 (7)") == {"ada": "8", "ben": "8"}
+    # The gradebook knows a student whose only file was refused by another name, too.
+    (course.handed_in / "dan").mkdir()
+    (course.handed_in / "dan" / "hw2.ipynb").write_bytes(b"")
+    course.grade()
+    rows = course.table("../book.csv")
+    rows.append(
+        {**rows[0], "Student": "Doe, Dan", "ID": "4", "SIS Login ID": "dan", "HW 2 (7)": ""}
+    )
+    book = course.write_table("book.csv", rows)
+    assert "we graded none of their files (1):\n  Doe, Dan" in course.export(book)
 
 
 def test_who_was_graded_before_is_not_missing_in_a_late_folder(tmp_path):

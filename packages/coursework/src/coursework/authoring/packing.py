@@ -164,7 +164,7 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
             for place in (course.sealed, course.sealed / "variants")
             for path in place.glob("*.json")
         }
-    files[MANIFEST] = manifest(files).encode()
+    files[MANIFEST] = manifest(files, course.title).encode()
     write_zip(target, {f"exercises/{name}": content for name, content in files.items()})
     return target
 

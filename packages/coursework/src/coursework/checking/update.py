@@ -35,13 +35,14 @@ class ArchiveRefused(ValueError):
     """The archive is invalid or older than the folder, or the folder needs a newer coursework."""
 
 
-def manifest(files: Mapping[str, bytes]) -> str:
-    """Return the manifest of files by name, as text.
+def manifest(files: Mapping[str, bytes], course: str) -> str:
+    """Return the manifest of a course's files by name, as text.
 
-    >>> json.loads(manifest({"README.txt": b"Answer in place of the dots."}))
-    {'files': {'README.txt': '57c8e4f1c8ae41625a63c305e9a221a4'}, 'format': 1}
+    >>> json.loads(manifest({"README.txt": b"Answer in place of the dots."}, "Statics"))
+    {'course': 'Statics', 'files': {'README.txt': '57c8e4f1c8ae41625a63c305e9a221a4'}, 'format': 1}
     """
-    return _as_text(files={name: digest_of(name, data) for name, data in files.items()})
+    digests = {name: digest_of(name, data) for name, data in files.items()}
+    return _as_text(course=course, files=digests)
 
 
 def _as_text(**about: object) -> str:
@@ -92,8 +93,14 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
     if not folder.is_dir():
         raise ArchiveRefused(f"There is no folder {folder} in {Path.cwd()}.")
     files = _files_in(archive_file)
-    files.pop(MANIFEST, None)
+    course = _course_of(files.pop(MANIFEST, b"{}"))
     before, archives = _handed_out(folder)
+    own = _course_of((folder / MANIFEST).read_bytes()) if archives else course
+    if own and course and own != course:
+        raise ArchiveRefused(
+            f"{archive_file} belongs to the course {course!r}, and this folder to {own!r}. Give "
+            "each course a folder of its own. We changed nothing."
+        )
     now = {name: digest_of(name, data) for name, data in files.items()}
     older = {name: _older(folder, name) for name in files if WHEEL.fullmatch(name)}
     digest = _digest_of_all(now)
@@ -143,7 +150,9 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
             beside = _put_beside(place, data, before)
             now[beside] = now[name]
             report.append(f"kept yours  {name}, and put the new version in {beside}")
-    (folder / MANIFEST).write_text(_as_text(files={**before, **now}, archives=archives), "utf8")
+    (folder / MANIFEST).write_text(
+        _as_text(course=course, files={**before, **now}, archives=archives), "utf8"
+    )
     if to_install:
         command = [
             "python" if sys.platform == "win32" else sys.executable,
@@ -274,6 +283,11 @@ def _put_beside(place: Path, data: bytes, before: Mapping[str, str]) -> str:
         number += 1
     beside.write_bytes(data)
     return beside.name
+
+
+def _course_of(content: bytes) -> str | None:
+    """Return the course that a manifest names."""
+    return Fields(json.loads(content), MANIFEST).maybe("course", text)
 
 
 def _handed_out(folder: Path) -> tuple[dict[str, str], list[str]]:

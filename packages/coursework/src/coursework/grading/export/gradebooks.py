@@ -11,7 +11,7 @@ import getpass
 import json
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -507,13 +507,15 @@ def fill(
     shown = book.column(
         "student", "lastname", "full name", "username", "orgdefinedid", "identifier"
     )
-    without = [
-        book.says(line, shown)
-        for line in range(first, len(book.lines))
-        if line not in students and any(field.says for field in book.lines[line][0])
-    ]
-    more, listed["nothing"] = _with_damaged(marks.store, without)
-    listed["damaged"] += more
+    damaged = {_signs(file.student) for file in refused_of(marks.store) if file.student}
+    listed["nothing"] = []
+    for line in range(first, len(book.lines)):
+        cells = [field.says for field in book.lines[line][0]]
+        if line not in students and any(cells):
+            # A refused file may be under any name or ID of its student.
+            signs = {_signs(cell) for cell in (*cells, turned(book.says(line, shown)))}
+            heading = "nothing" if signs.isdisjoint(damaged) else "damaged"
+            listed[heading].append(book.says(line, shown))
     listed["strangers"] = sorted(set(marks.students) - set(students.values()) - set(several))
     listed["missing"] = sorted(set(marks.missing) & set(students.values()))
     listed["several"] = several
@@ -567,13 +569,6 @@ def _is_number(there: str) -> bool:
         return math.isfinite(float(there.replace(",", ".")))
     except ValueError:
         return False
-
-
-def _with_damaged(store: Store, names: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Split students without a record into those whose files were all refused, and all others."""
-    known = {_signs(file.student) for file in refused_of(store) if file.student}
-    damaged = [name for name in names if _signs(name) in known or _signs(turned(name)) in known]
-    return damaged, [name for name in names if name not in damaged]
 
 
 def _signs(name: str) -> str:

@@ -493,6 +493,10 @@ def read_term(path: str | Path) -> Term:
         advice = "Write a date as 2026-10-05T23:59:00, and put text in quotation marks."
         if isinstance(error, FileNotFoundError):
             advice = "Create it with `coursework term new`."
+        elif isinstance(error, UnicodeDecodeError):
+            advice = "Save the file as UTF-8."
+        elif re.search(r"hex value|escape|overwrite|declare", str(error)):
+            advice = "Write / in paths, not a backslash, and each table and entry only once."
         raise BadTerm(f"{path}: {reason_of(error)}. {advice}") from None
     file = _File(path)
     if zone := said.get("time-zone"):

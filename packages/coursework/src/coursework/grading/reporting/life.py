@@ -36,16 +36,13 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
             *(name for name in known if name.casefold() == typed.casefold()),
             *difflib.get_close_matches(typed, known, 1),
         ]
-        moved = [
+        renamed = [
             event.student
             for (_, name), event in all_given.items()
-            if given
-            and name == assignment
-            and event.id != given.id
-            and set(event.files.values()) == set(given.files.values())
+            if name == assignment and event.why.endswith(f"was {student!r}")
         ]
-        if moved:
-            raise ValueError(f"{student!r} is now {moved[-1]!r}: the marks are under that name.")
+        if renamed:
+            raise ValueError(f"{student!r} is now {renamed[-1]!r}: the marks are under that name.")
         raise ValueError(
             f"{student!r} has no marks for {assignment!r} in {store.folder}. There are "
             f"marks for {', '.join(known[:40]) or 'nobody yet'}"
