@@ -4,7 +4,6 @@ import gc
 import os
 import threading
 from collections import defaultdict
-from functools import cache
 from importlib import metadata
 
 import pytest
@@ -24,7 +23,6 @@ try:
 
     from notebook_pages import warm_kernels
     from notebook_pages.browser import FLAGS, MISSING, find
-    from notebook_pages.used import MADE_WITH, fingerprint_of_run, notebook_of
 except ModuleNotFoundError as missing:
     pytest.exit(
         f"The Python package {missing.name} is not there. `make test` sets up everything and runs "
@@ -106,22 +104,8 @@ def pytest_collection():
         gc.enable()
 
 
-@cache
-def is_as_stored(path):
-    """Check whether ``make notebooks`` stored a notebook's outputs with this code and these files.
-
-    The build takes such outputs as they are, too.
-    """
-    notebook = notebook_of(path)
-    made_with = notebook.metadata.get(MADE_WITH)
-    return made_with is not None and made_with == fingerprint_of_run(notebook)
-
-
 @pytest.hookimpl(tryfirst=True)  # before the tests that are marked as long are left out
 def pytest_collection_modifyitems(config, items):
-    for item in items:
-        if isinstance(item, nbval.plugin.IPyNbCell) and is_as_stored(item.path):
-            item.add_marker(pytest.mark.further)
     cases = defaultdict(list)
     for item in items:
         for node, marker in item.iter_markers_with_node("sampled"):

@@ -3,8 +3,6 @@ rounding.
 """
 
 import re
-import subprocess
-import sys
 from textwrap import dedent
 
 import nbformat
@@ -130,11 +128,3 @@ def test_notebook_is_stored_as_make_notebooks_stores_it(path):
     assert counts == list(range(1, len(counts) + 1)), "run `make notebooks`"
     stored = dedent(path.read_text("utf8"))
     assert nbformat.writes(normalise(notebook)) == stored.rstrip("\n"), "run `make notebooks`"
-
-
-@pytest.mark.long
-def test_every_notebook_gives_its_stored_outputs():
-    """The other tests run only notebooks whose code, or the files they use, have changed since."""
-    run = [sys.executable, "-m", "pytest", "-q", "--every-case", *all_notebooks(REPOSITORY)]
-    done = subprocess.run(run, cwd=REPOSITORY, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout[-5000:]

@@ -110,7 +110,7 @@ def ends(result: object) -> None:
             f"No cell that you have run sets `{error.name}`. If it is spelled right, run the cell "
             "that sets it"
         )
-        if _outdated.get(error.name) == STOPPED:
+        if _outdated.get(str(error.name)) == STOPPED:
             remedy = f"The cell that sets `{error.name}` stopped with an error. Correct and run it"
         print(f"{remedy}, and then run this check again.")
 
