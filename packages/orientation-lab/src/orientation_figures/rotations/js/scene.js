@@ -5,7 +5,7 @@
 // z-x-y: the first motor rotates about a_z, the second about b_x, the third about c_y, and the lens looks along d_y. So
 // the three angles are longitude, height and roll.
 import { AXES, IDENTITY, SEQUENCES, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
-  dcmFromQuaternion, dot, length, multiply, quaternionAt, quaternionFromDcm, scale, simpleDcm, slerp, subtract,
+  dcmFromQuaternion, dot, length, multiply, quaternionAt, quaternionFromDcm, scale, several, simpleDcm, slerp, subtract,
   times, transpose, unit, wrapped } from '../../moving/js/mathematics.js';
 import { STOPS } from './stops.js';
 
@@ -247,17 +247,17 @@ export const COURSE = {
   'two-triads': (t) => ({ angles: GENERIC, away: between(t, 0.68, 0.95) }),
   'one-motor': (t) => ({ angles: through(poses([0, 0, 0], [40, 0, 0], [40, 0, 0], [120, 0, 0], [120, 0, 0], [40, 0, 0]), t, [0.01, 0.14, 0.34, 0.55, 0.68, 0.85]) }),
   'nine-shadows': (t) => ({ angles: GENERIC, lit: Math.max(0, Math.ceil(3 * t) - 1) }),
-  'looking-back': (t) => ({ angles: through(poses([0, 12, 0], [55, 12, 0], [0, 12, 0], [0, 12, 0], [55, 12, 0]), t, [0.01, 0.14, 0.28, 0.38, 0.58]), ride: t > 0.34 ? 1 : 0, faded: t > 0.67 ? 1 : 0 }),
+  'looking-back': (t) => ({ angles: through(poses([0, 0, 0], [55, 0, 0], [0, 0, 0], [0, 0, 0], [55, 0, 0]), t, [0.01, 0.14, 0.28, 0.38, 0.58]), ride: t > 0.34 ? 1 : 0, faded: t > 0.67 ? 1 : 0 }),
   'two-motors': (t) => ({ angles: [SWING * between(t, 0.01, 0.1), TILT * between(t, 0.12, 0.22), 0] }),
   'three-are-enough': (t) => ({ angles: through(TOWARDS_STAR, t, [0.34, 0.38, 0.42, 0.46, 0.67, 0.72, 0.77, 0.82]) }),
   'same-numbers': (t) => ({ angles: poses([35, 50, 65])[0].map((angle, k) => angle * between(t, 0.34 + 0.05 * k, 0.39 + 0.05 * k)) }),
   lock: (t) => ({ angles: through(poses([0, 20, 0], [0, 90, 0], [0, 90, 0], [-50, 90, 50]), t, [0.01, 0.12, 0.26, 0.42]) }),
   'one-turn': (t, start) => ({ part: between(t, 0.04, 0.3), start }),
-  'two-mirrors': (t) => ({ angles: ZERO, together: 0.5 * between(t, 0.27, 0.36) + 0.5 * between(t, 0.53, 0.66), apart: between(t, 0.38, 0.48) }),
-  'four-numbers': (t) => ({ whole: 2 * PI * (0.3 * between(t, 0.01, 0.12) + 0.7 * between(t, 0.52, 0.68)), laid: between(t, 0.27, 0.36),
-    pairs: t > 0.76 ? 1 : 0, faded: t > 0.76 ? 1 : 0, joined: between(t, 0.84, 0.96) }),
+  'two-mirrors': (t) => ({ angles: ZERO, together: 0.55 - 0.35 * between(t, 0.27, 0.36) + 0.8 * between(t, 0.53, 0.66), apart: (35 + 30 * between(t, 0.38, 0.48)) / 90 }),
+  'four-numbers': (t) => ({ whole: 2 * PI * (0.15 + 0.15 * between(t, 0.01, 0.12) + between(t, 0.52, 0.68)), laid: between(t, 0.26, 0.32),
+    pairs: t > 0.75 ? 1 : 0, faded: (t > 0.25 && t < 0.5) || t > 0.75 ? 1 : 0, joined: between(t, 0.79, 0.91) }),
   'not-home': (t) => ({ angles: ZERO, turn: 2 * PI * (between(t, 0.01, 0.12) + between(t, 0.6, 0.66)),
-    passed: t < 0.6 ? between(t, 0.41, 0.49) + between(t, 0.51, 0.59) : between(t, 0.68, 0.75) }),
+    passed: t < 0.6 ? between(t, 0.4, 0.45) + between(t, 0.53, 0.59) : between(t, 0.68, 0.75) }),
   'between-poses': (t) => ({ part: between(t, 0.36, 0.95) }),
   'it-moves': (t) => ({ time: LASTS * clamp(t) }),
   'your-turn': (t, start) => ({ angles: start }),
@@ -410,7 +410,7 @@ const SHOWS = {
   'two-mirrors'(scene, s) {
     const axis = unit([0.1, -0.2, 1]), u = unit(cross([-1, 0, 0.2], axis)), v = cross(axis, u);
     const way = (angle) => add(scale(Math.cos(angle), u), scale(Math.sin(angle), v));
-    const first = deg(20) - s.together * deg(52), gap = deg(35) + s.apart * deg(30), second = first + gap;
+    const first = deg(20) - s.together * deg(52), gap = deg(90) * s.apart, second = first + gap;
     for (const [angle, name] of [[first, '\\hat{u}_1'], [second, '\\hat{u}_2']]) {
       mirror(scene, axis, way(angle));
       scene.rod(ZERO, scale(1.45, way(angle)), 0.008, 'accent');
@@ -430,32 +430,35 @@ const SHOWS = {
     scene.label(twice, '\\mathbf{v}\'\'', 'D');
     scene.sweep(axis, gap, scale(0.62, way(first)), 'ink', { thick: 0.02, head: false });
     scene.label(scale(0.66, way((first + second) / 2)), '\\theta/2', 'ink');
-    scene.label(scale(1, way(deg(-32) + gap)), '\\theta', 'accent');
-    scene.sweep(axis, 2 * gap, scale(0.95, way(deg(-32))), 'accent', { thick: 0.022 });
+    // From v to v'', each seven tenths of the way to its tip.
+    const middle = scale(0.245, axis);
+    scene.label(add(scale(1.1, way(deg(-32) + gap)), middle), '\\theta', 'accent');
+    scene.sweep(axis, 2 * gap, scale(1.05, way(deg(-32))), 'accent', { thick: 0.022, origin: middle });
   },
   'four-numbers'(scene, s) {
-    const [axis, angle] = turnOf(s), pairs = s.free || Math.abs(angle - 2 * PI) > 0.01 ? 0 : s.pairs;
+    const [axis, angle] = turnOf(s), pairs = pairsOf(s);
     scene.alpha = pairs;
     if (pairs) fourMirrors(scene, s.joined);
     scene.alpha = 1 - pairs;
     const aside = Math.abs(axis[2]) > 0.99 ? [1, 0, 0] : [0, 0, 1], first = unit(cross(aside, axis)), second = turned(axis, angle / 2, first);
     const [cosine, sine] = [Math.cos(angle / 2), Math.sin(angle / 2)], foot = scale(UNIT * cosine, first);
     for (const way of [first, second]) mirror(scene, axis, way, 0.16);
-    scene.dashes(scale(-1.6, axis), scale(1.7, axis), 0.014, 'accent', 13);
+    scene.dashes(scale(-0.6, axis), scale(1.7, axis), 0.014, 'accent', 10);
     scene.label(scale(1.7, axis), '\\hat{e}', 'accent');
     scene.sweep(axis, angle % (2 * PI), scale(0.3, first), 'D', { origin: scale(1.4, axis), thick: 0.022 });
+    scene.label(add(scale(1.4, axis), scale(0.35, turned(axis, angle % (2 * PI) / 2, first))), '\\theta', 'D', scale(1.4, axis));
     scene.arrow(ZERO, scale(UNIT, first), 'ink', { thick: 0.018, label: '\\hat{u}_1' });
     scene.arrow(ZERO, scale(UNIT, second), 'ink', { thick: 0.018, label: '\\hat{u}_2' });
     // The shadow of the second on the first is the cosine. The rest is the sine, which is also laid along the line.
     scene.rod(ZERO, foot, 0.045, 'ink');
     scene.rod(foot, scale(UNIT, second), 0.03, 'accent');
-    if (Math.abs(cosine) > 0.3) scene.label(add(scale(0.95, foot), scale(-0.2, cross(axis, first))), '\\cos\\theta/2', 'ink', scale(0.95, foot));
-    if (Math.abs(sine) > 0.3) scene.label(scale(0.6, add(foot, scale(UNIT, second))), '\\sin\\theta/2', 'accent');
+    if (Math.abs(cosine) > 0.3) scene.label(add(scale(0.95, foot), scale(-0.03, cross(axis, first))), '\\cos(\\theta/2)', 'ink', scale(0.95, foot));
+    if (Math.abs(sine) > 0.3) scene.label(scale(0.6, add(foot, scale(UNIT, second))), '\\sin(\\theta/2)', 'accent');
     const laid = UNIT * sine * s.laid;
-    if (Math.abs(laid) > 0.05) scene.arrow(ZERO, scale(laid, axis), 'accent', { thick: 0.045 });
+    if (Math.abs(laid) > 0.05) scene.arrow(ZERO, scale(laid, axis), 'accent', { thick: 0.06 });
     scene.alpha *= s.laid;
     scene.triad('A', IDENTITY, { reach: UNIT, thick: 0.016 });
-    for (const k of [0, 1, 2]) shadow(scene, axis, IDENTITY[k], laid);
+    for (const k of [0, 1, 2]) shadow(scene, axis, IDENTITY[k], laid, 0.03);
     scene.alpha = 1;
   },
   'not-home'(scene, s) {
@@ -489,7 +492,7 @@ const SHOWS = {
     for (const [rows, letter] of [[from, '0'], [to, '1']]) {
       flag(scene, rows, 'ink', 0.06);
       scene.label(scale(1.62, rows[1]), letter, 'ink');
-      scene.camera(rows, { alpha: 0.16, lamp: false });
+      scene.camera(rows, { alpha: s.part && !s.free ? 0.05 : 0.16, lamp: false });
     }
     if (!s.free && s.part) flag(scene, angles, 'B', 0.07), scene.camera(angles, { alpha: 0.3, colour: 'B', lamp: false });
     flag(scene, D, 'accent', 0.085);
@@ -511,11 +514,11 @@ const SHOWS = {
 };
 
 // A mirror through the line of the axis, and through a direction at right angles to it.
-function mirror(scene, axis, way, alpha = 0.34, size = 1, rim = 'metal') {
-  const corner = (side, high) => add(scale(1.45 * size * side, way), scale(1.25 * size * high, axis));
+function mirror(scene, axis, way, alpha = 0.34) {
+  const corner = (side, high) => add(scale(1.45 * side, way), scale(1.25 * high, axis));
   scene.ribbon([corner(-1, -1), corner(1, -1)], [corner(-1, 1), corner(1, 1)], 'glass', alpha);
   const frame = [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1), corner(-1, -1)];
-  frame.slice(1).forEach((end, k) => scene.rod(frame[k], end, 0.014, rim, { alpha: Math.min(1, 3 * alpha) }));
+  frame.slice(1).forEach((end, k) => scene.rod(frame[k], end, 0.014, 'metal', { alpha: Math.min(1, 3 * alpha) }));
 }
 
 // Two pairs of mirrors, each about its own line. Swung together, the last of the first pair and the first of the second
@@ -525,14 +528,21 @@ function fourMirrors(scene, joined) {
   const mirrors = [[0, -45 * swing - 35], [0, -45 * swing], [1, 80 * swing], [1, 25 + 80 * swing]].map(([pair, angle]) => (
     { line: lines[pair], way: turned(lines[pair], deg(angle), unit(cross(common, lines[pair]))) }));
   mirrors.forEach(({ line, way }, k) => {
-    const alpha = 0.2 * (k === 1 || k === 2 ? swing : 1);
-    mirror(scene, line, way, alpha, 0.8, k < 2 ? 'accent' : 'ink');
-    scene.label(add(scale(1.16, way), line), String(k + 1), 'ink', ZERO, 5 * alpha);
+    // The two that coincide are seen as one before they fade.
+    const middle = k === 1 || k === 2, alpha = middle ? 1 - between(joined, 0.7, 1) : 1, colour = k < 2 ? 'accent' : 'ink';
+    const around = (side) => Array.from({ length: 17 }, (_, j) => (
+      add(scale(1.3 * Math.cos(PI * j / 16), line), scale(1.3 * side * Math.sin(PI * j / 16), way))));
+    scene.ribbon(around(1), around(-1), 'glass', 0.2 * alpha);
+    scene.circle(cross(line, way), scale(1.3, line), colour, { thick: 0.014, alpha });
+    scene.label(turned(cross(line, way), deg(middle ? 50 : 75), scale(1.34, line)), String(k + 1), colour, ZERO, alpha);
   });
-  for (const line of lines) scene.dashes(scale(-1.6, line), scale(1.6, line), 0.016, 'muted', 13, swing);
+  lines.forEach((line, k) => scene.dashes(scale(-1.6, line), scale(1.6, line), 0.016, k ? 'ink' : 'accent', 13, swing));
   const left = unit(cross(...[0, 3].map((k) => cross(mirrors[k].line, mirrors[k].way))));
   scene.dashes(scale(-1.8, left), scale(1.8, left), 0.02, 'accent', 13, joined);
 }
+
+// How visible the four mirrors are, which take the place of two that have been turned as the text left them.
+export const pairsOf = (s) => (s.free || Math.abs(s.whole - 2.6 * PI) > 0.01 ? 0 : s.pairs);
 
 // The line and the angle of stop 12: those of the text, or of the pose in the reader's hand.
 export const turnOf = (s) => (s.free ? axisOf(s.angles) : [FOUR, s.whole]);
@@ -551,11 +561,11 @@ function shadows(scene, row, along) {
   for (const k of along) shadow(scene, row, IDENTITY[k], REACH);
 }
 
-function shadow(scene, from, onto, reach) {
+function shadow(scene, from, onto, reach, thick = 0.055) {
   const along = dot(from, onto), foot = scale(reach * along, onto);
-  if (Math.abs(along) > 0.02) scene.rod(ZERO, foot, 0.055, 'accent');
+  if (Math.abs(along) > 0.02) scene.rod(ZERO, foot, thick, 'accent');
   scene.dashes(scale(reach, from), foot, 0.012, 'accent', 11);
-  scene.ball(foot, 0.055, 'accent');
+  scene.ball(foot, thick, 'accent');
 }
 
 // Return the orientation of the camera at a moment, since the angles do not determine everything.
@@ -581,8 +591,8 @@ function moved(s) {
 export function viewOf(s) {
   const fixed = viewFrom(deg(s.eye[0]), deg(s.eye[1]));
   if (s.ride < 0.001) return fixed;
-  // The eye moves with the camera from the camera's pose at the change of view, so that the picture does not jump.
-  const riding = multiply(fixed, transpose(frames(poses([0, 12, 0])[0]).D), frames(s.angles).D);
+  // The eye moves with the camera, which is at home when the view changes, so the picture does not jump.
+  const riding = multiply(fixed, frames(s.angles).D);
   const [from, to] = [fixed, riding].map(quaternionFromDcm);
   return dcmFromQuaternion(slerp(from, dot(from, to) < 0 ? scale(-1, to) : to, s.ride));
 }
@@ -620,7 +630,7 @@ export function lookOf(dcm) {
   if (Math.abs(height) >= 88) return `straight ${height > 0 ? 'up' : 'down'}`;
   const heading = (Math.atan2(y[0], y[1]) * 180 / PI + 360) % 360;
   const wind = WINDS[Math.round(heading / 45) % 8];
-  const high = height === 0 ? 'towards the horizon' : `${Math.abs(height)} degrees ${height > 0 ? 'up' : 'down'}`;
+  const high = height === 0 ? 'towards the horizon' : `${several(Math.abs(height), 'degrees')} ${height > 0 ? 'up' : 'down'}`;
   // The roll: the angle from the upright direction across the line of sight to the camera's own z.
   const level = unit(cross(y, [0, 0, 1])), upright = cross(level, y);
   const roll = Math.round(Math.atan2(dot(z, level), dot(z, upright)) * 180 / PI);

@@ -39,7 +39,7 @@ export const STOPS = [
     after: 'The mirrors have opened from 35 degrees to 65, and the arrow\'s turn has grown from 70 degrees to 130. Swung together until the arrow lies in the first, they turn it as far.' },
   { id: 'four-numbers', machine: 0, camera: 1, A: 0, D: 0, still: 0.45, dials: ['whole'], by: 'camera', ground: 0,
     before: 'The camera has turned about the line where two mirrors meet. An arrow in the second casts a shadow on an arrow in the first, the cosine. The sine is laid along the line, and casts three shadows on the hand\'s arrows.',
-    after: 'The camera has gone round once, and the second mirror half way: it coincides with the first, and its arrow points the other way. Then four mirrors have become two.' },
+    after: 'The camera has gone round once more, and the arrow in the second mirror half way, so that it points the other way. Then four mirrors have become two.' },
   { id: 'not-home', machine: 0.06, camera: 1, A: 0, D: 0, still: 0.3, dials: ['turn', 'passed'], by: 'camera', ground: 0,
     before: 'A flat cable runs from the camera to the wall. The camera begins to turn about its line of sight.',
     after: 'The camera has turned twice, then held still while the cable was passed round it. The cable is flat again.' },

@@ -5,7 +5,7 @@ import { AXES, add, dot, fullTurns, length, quaternionFromDcm, scale, several, t
 import { calm, element, put, words, write } from '../../moving/js/shared.js';
 import { LABELS } from '../../moving/js/glyphs.js';
 import { Sensors } from '../../moving/js/phone.js';
-import { AT_READER, COURSE, CROOKED, EYES, FROM, GENERIC, LASTS, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, placed,
+import { AT_READER, COURSE, CROOKED, EYES, FROM, GENERIC, LASTS, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, pairsOf, placed,
   project, sceneOf, turnOf, turned, turnedAlong, turnedFrame, WHOLE_WAYS } from './scene.js';
 import { Painter } from './paint.js';
 import { STOPS } from './stops.js';
@@ -19,7 +19,7 @@ const say = (angle) => several(Math.round(angle * DEGREES), 'degrees');
 const DIALS = {
   psi: ['first motor', -180, 180, 1, DEGREES, '°', 0], theta: ['second motor', -180, 180, 1, DEGREES, '°', 1], phi: ['third motor', -180, 180, 1, DEGREES, '°', 2],
   away: ['carry the camera across', 0, 100, 1, 100, '%'], part: ['share of the way', 0, 100, 1, 100, '%'],
-  together: ['both mirrors together', 0, 52, 1, 52, '°'], apart: ['mirrors apart', 35, 65, 1, 30, '°', null, 35],
+  together: ['both mirrors together', 0, 52, 1, 52, '°'], apart: ['mirrors apart', 0, 90, 1, 90, '°'], joined: ['swing the pairs together', 0, 100, 1, 100, '%'],
   whole: ['rotation of the camera', 0, 720, 1, DEGREES, '°'], turn: ['rotation of the camera', 0, 720, 1, DEGREES, '°'],
   passed: ['pass the cable round', 0, 200, 1, 100, '%'], time: ['time', 0, LASTS, 0.1, 1, ' s'],
 };
@@ -170,6 +170,7 @@ class World {
     if (!this.set.has('passed') && Math.abs(state.turn - goal.turn) > 1e-6) goal.passed = 0;
     state.lit = this.set.has('lit') ? state.lit : course.lit ?? 0;
     goal.own = state.free ? 1 : 0;
+    if (state.free) goal.part = 0;
   }
 
   takeBack() {
@@ -238,6 +239,8 @@ class World {
 
   draw() {
     this.painter.paint(this.picture);
+    const dials = pairsOf(this.state) > 0.5 ? ['joined'] : stopOf(this.state.stop).dials;
+    if (dials[0] !== this.open[0]?.name) this.showDials({ ...stopOf(this.state.stop), dials });
     this.drawNames();
     write(this.seen, this.words());
     if (!this.numbers.hidden) this.drawNumbers();
@@ -290,12 +293,14 @@ class World {
     const number = (value) => (value < -5e-4 ? '\u2212' : '\u2007') + Math.abs(value).toFixed(3);
     if (!this.cells) {
       this.cells = Array.from({ length: 13 }, () => element('span', {}));
-      const row = (head, from, to) => element('div', {}, element('b', {}, head), ...this.cells.slice(from, to));
+      const row = (head, from, to) => element('div', {}, element('b', {}, head), ...(from < 9 ? [element('span', {})] : []), ...this.cells.slice(from, to));
       const heads = AXES.map((axis) => element('span', {}, `$\\hat{a}_${axis}$`));
-      this.numbers.append(element('div', {}, element('b', {}), ...heads), ...AXES.map((axis, k) => row(`$\\hat{d}_${axis}$`, 3 * k, 3 * k + 3)), row('$q$', 9, 13));
+      this.numbers.append(element('div', {}, element('b', {}), element('span', {}), ...heads), ...AXES.map((axis, k) => row(`$\\hat{d}_${axis}$`, 3 * k, 3 * k + 3)), row('$q$', 9, 13));
     }
     // The quaternion is shown from the stop on that explains it.
-    this.cells[9].parentElement.hidden = STOPS.indexOf(stopOf(this.state.stop)) < STOPS.indexOf(stopOf('four-numbers'));
+    const early = STOPS.indexOf(stopOf(this.state.stop)) < STOPS.indexOf(stopOf('four-numbers'));
+    this.cells[9].parentElement.hidden = early;
+    this.numbers.classList.toggle('nine-only', early);
     D.flat().concat(q).forEach((value, k) => {
       write(this.cells[k], number(value));
       this.cells[k].classList.toggle('lit', this.state.stop === 'nine-shadows' && Math.floor(k / 3) === this.state.lit && k < 9);
@@ -318,7 +323,7 @@ class World {
 
   words() {
     const { state } = this, { A, D } = this.picture.frames, look = `The camera looks ${lookOf(D)}.`;
-    const home = apart(A, D), [, turn] = turnOf(state), gap = Math.round(35 + 30 * state.apart);
+    const home = apart(A, D), [, turn] = turnOf(state), gap = Math.round(90 * state.apart);
     const more = {
       'one-motor': () => `First motor at ${say(state.angles[0])}: the two shadows are ${Math.cos(state.angles[0]).toFixed(2)} and ${Math.sin(state.angles[0]).toFixed(2)} long.`,
       'nine-shadows': () => `The shadows of the camera's ${'xyz'[state.lit]} arrow are ${D[state.lit].map((entry) => entry.toFixed(2)).join(', ')}.`,
@@ -332,7 +337,7 @@ class World {
       },
       'one-turn': () => (home < deg(0.5) ? `${look} It is home.` : `${look} From here, one rotation of ${say(home)} leads home.`),
       'two-mirrors': () => `The mirrors are ${gap} degrees apart, and the arrow has turned ${2 * gap} degrees.`,
-      'four-numbers': () => (state.pairs > 0.5 ? 'Two rotations are four mirrors. Swung until 2 and 3 coincide, they are two.'
+      'four-numbers': () => (pairsOf(state) > 0.5 ? 'Two rotations are four mirrors. Swung until 2 and 3 coincide, they are two.'
         : `Turned ${say(turn)}: the arrows of the mirrors are ${say(turn / 2)} apart.`),
       'not-home': () => this.cable(),
       'between-poses': () => this.way(D),
@@ -350,7 +355,7 @@ class World {
 
   cable() {
     const { turn, passed } = this.state, once = fullTurns(turn) === 1, times = Math.round(passed);
-    if (turn < 1e-8) return 'The camera is as it was, and the cable is flat.';
+    if (turn < 1e-8) return `The camera is as it was, and the cable is flat.${passed > 0.02 ? ' You can pass it round after a whole turn.' : ''}`;
     if (!fullTurns(turn)) return `The camera has turned ${say(turn)}, and the cable has followed.${passed > 0.02 ? ' You can pass it round after a whole turn.' : ''}`;
     if (Math.abs(passed - times) > 0.01) return 'The camera stands still while the cable is passed round it.';
     if (!times) return `After ${once ? 'one turn' : 'two turns'} the camera is as it was. The cable is not: it is twisted by ${once ? 'one turn' : 'two turns'}.`;
@@ -361,10 +366,10 @@ class World {
   way(D) {
     const needed = this.needed ??= ['one', 'angles'].map((kind) => turnedAlong(WHOLE_WAYS.map((both) => both[kind])));
     const { track, free, part } = this.state;
-    if (!free && !part) return 'The camera is in pose 0.';
+    if (!free && !part) return `The camera is in pose 0. Pose 1 is ${say(needed[0])} away.`;
     if (!free) return `The single rotation takes ${say(needed[0])}. The red path, in angles, turns the camera through ${say(needed[1])} in all.`;
     const left = apart(D, frames(TO).D), taken = turnedAlong(track);
-    if (left > deg(15)) return `Your path so far: ${say(taken)}. Pose 1 is ${say(left)} away.`;
+    if (left > deg(15)) return `Your path so far: ${say(taken)}. Pose 1 is ${say(left)} away, its roll included.`;
     return `Your path: ${say(taken + left)}. The single rotation: ${say(needed[0])}. In angles: ${say(needed[1])}.`;
   }
 
@@ -389,6 +394,9 @@ class World {
     const { B, C } = this.picture.frames, stop = stopOf(this.state.stop), found = [];
     const far = (point) => Math.hypot(...this.onScreen(point).map((entry, k) => entry - at[k]));
     if (Math.hypot(at[0], at[1] - this.onScreen([0, 0, 0])[1]) < 0.3 * this.half) found.push({ part: 'D', near: 0.1 });
+    // An arrow of the camera turns it, too.
+    const reached = (row) => [0.6, 0.9, 1.2, 1.5].some((reach) => far(scale(reach, row)) < 16);
+    if (stop.D > 0.5 && this.picture.frames.D.some(reached)) found.push({ part: 'D', near: 0.1 });
     if (stop.machine > 0.5 || stop.id === 'one-motor') {
       for (const [part, u, v, radius] of [['B', B[0], B[2], 1.05], ['C', C[0], C[1], 0.77]]) {
         for (let k = 0; k <= 24; k += 1) {
@@ -480,8 +488,9 @@ class World {
     if (Math.abs(goal.turn - round) < deg(12)) goal.turn = round;   // no hand stops exactly after a whole turn
     if (part === 'D' && this.state.stop === 'it-moves') {
       // Throw it at the speed of the last tenth of a second.
-      const lately = (this.swing ?? []).filter(({ at }) => event.timeStamp - at < 100);
-      if (lately.length) this.throwIt(scale(10, add(...lately.map(({ by }) => by))));
+      const lately = (this.swing ?? []).filter(({ at }) => event.timeStamp - at < 100).map(({ by }) => by), last = this.swing?.at(-1);
+      const rate = lately.length ? scale(10, add(...lately)) : [0, 0, 0];
+      if (last) this.throwIt(length(rate) > 0.4 ? rate : scale(0.4, unit(last.by)));
     }
     this.letGo();
   }
@@ -544,14 +553,14 @@ class World {
 
   showDials(stop) {
     this.open = stop.dials.map((name) => {
-      const [title, min, max, step, factor, sign, motor, zero = 0] = DIALS[name];
+      const [title, min, max, step, factor, sign, motor] = DIALS[name];
       const field = element('input', { type: 'range', min, max, step, 'aria-label': title, input: () => {
-        const value = (Number(field.value) - zero) / factor;
-        if (motor >= 0 && motor !== null) this.motor(motor, value); else this.dial(name, value);
+        const value = Number(field.value) / factor;
+        if (motor >= 0) this.motor(motor, value); else this.dial(name, value);
         this.wake();
       }, change: () => this.letGo() });
       const value = element('output', {});
-      return { name, field, value, factor, sign, motor, zero, title, row: element('label', { class: `dial${motor >= 0 && motor !== null ? ` motor-${motor}` : ''}` }, element('span', {}, title), field, value) };
+      return { name, field, value, factor, sign, motor, title, row: element('label', { class: `dial${motor >= 0 ? ` motor-${motor}` : ''}` }, element('span', {}, title), field, value) };
     });
     this.dials.replaceChildren(...this.open.map(({ row }) => row));
     const light = (k) => { this.state.lit = k; this.set.add('lit'); this.heldAt = this.goal.t; };
@@ -564,9 +573,9 @@ class World {
   }
 
   showValues() {
-    for (const { name, field, value, factor, sign, motor, zero, title } of this.open) {
-      const now = motor >= 0 && motor !== null ? wrapped(this.picture.angles[motor]) : this.state[name];
-      const shown = String(Number((now * factor + zero).toFixed(factor === 1 ? 1 : 0)) + 0);
+    for (const { name, field, value, factor, sign, motor, title } of this.open) {
+      const now = motor >= 0 ? wrapped(this.picture.angles[motor]) : this.state[name];
+      const shown = String(Number((now * factor).toFixed(factor === 1 ? 1 : 0)) + 0);
       if (document.activeElement !== field || !this.set.has(name)) field.value = shown;
       write(value, `${shown}${sign}`.replace('-', '\u2212'));
       put(field, 'aria-valuetext', `${title}: ${several(shown, { '°': 'degrees', '%': 'per cent', ' s': 'seconds' }[sign])}`);
@@ -642,7 +651,7 @@ class World {
     }
     for (const name of SCALARS) {
       const dial = DIALS[name];
-      if (dial && Number.isFinite(rest[name]) && rest[name] >= 0 && rest[name] * dial[4] + (dial[7] ?? 0) <= dial[2] + 1e-6) {
+      if (dial && Number.isFinite(rest[name]) && rest[name] >= 0 && rest[name] * dial[4] <= dial[2] + 1e-6) {
         this.set.add(name);
         this.goal[name] = rest[name];
       }
