@@ -508,7 +508,7 @@ def ladder_of(public: Question, authored: Iterable[str] | None, turns: Sequence[
     steps = [begin] if begin else []
     if len(turns) > 1:
         steps.append(
-            f"It is built of {len(turns)} turns, one after another. Check each of them alone."
+            f"It is built of {len(turns)} rotations, one after another. Check each of them alone."
         )
     return steps
 
