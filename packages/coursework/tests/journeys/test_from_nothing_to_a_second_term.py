@@ -1,11 +1,13 @@
 """An instructor goes from nothing to a second term by the manual's commands, with usual errors."""
 
+import contextlib
 import json
 from unittest.mock import Mock
 
 import pytest
 from course_by_commands import read_table, run_command, write_table
 
+from coursework import worked_solution
 from coursework.grading import sitting
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
@@ -132,7 +134,11 @@ def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     assert '"ben","100"' in (folder / "marks" / "course" / "course.csv").read_text()
     # The next term has other students and other numbers.
     edited(folder / "course.toml", 'title = "My course"', 'title = "My course"\nedition = "2027"')
-    run("release first-steps")
+    edited(folder / "course.toml", 'edition = "2027"', 'edition = "2027"\nroster = true')
+    # After the deadline, whoever gave up may read the worked solution.
+    code = run("release first-steps").rpartition("first-steps: ")[2].strip()
+    with contextlib.chdir(folder / "exercises"):
+        assert "A worked solution comes" in str(worked_solution("first-steps/slope", code))
     (folder / "next.csv").write_text("student\neva\nfay\n")
     run("term new marks-2027 --roster next.csv")
     assert "already exists" in run("term new marks-2027 --roster next.csv", fails=True)

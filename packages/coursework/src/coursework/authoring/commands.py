@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import sys
 from collections.abc import Callable, Sequence
@@ -138,6 +139,19 @@ def release(only: Sequence[str], sources: Path | None) -> None:
     print(f"For students: {archive(course)}")
     asked = {name: question for notebook in made for name, question in notebook.asked.items()}
     print(*counted(asked), sep="\n")
+    if course.roster:
+        print("For students who gave up, after the deadline: worked_solution(question, code), with")
+        print(*(f"  {notebook.name}: {notebook.code}" for notebook in made), sep="\n")
+
+
+def _writable(page: str | Path) -> str | Path:
+    """Return the path of a page if it can be written, so that an error comes before the work."""
+    place = Path(page).absolute()
+    there = next(path for path in (place, *place.parents) if path.exists())
+    # An existing page must be a file, and a new one must be in a folder.
+    if there.is_dir() == (there == place) or not os.access(there, os.W_OK):
+        raise OSError(f"We cannot write the page {str(page)!r}. Give another path with --page.")
+    return page
 
 
 def publish(site: Path | None) -> None:
@@ -160,7 +174,7 @@ def trial(name: str, page: str | None) -> None:
     from .trial import trial as show
 
     course = _course()
-    place = page or course.archive.with_name("try.html")
+    place = _writable(page or course.archive.with_name("try.html"))
     print(f"The page: {show(course, name, place)}")
 
 
@@ -181,7 +195,7 @@ def selftest(only: Sequence[str], page: str | None, sources: Path | None) -> Non
     from .selftest import selftest as try_all
 
     course = _course(sources)
-    place = page or course.archive.with_name("selftest.html")
+    place = _writable(page or course.archive.with_name("selftest.html"))
     faults = try_all(course, place, only)
     print(f"The page: {place}")
     if faults:
