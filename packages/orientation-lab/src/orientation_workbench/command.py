@@ -205,11 +205,12 @@ def _explain(chosen):
     try:
         if not chosen.noise >= 0:
             raise ValueError(f"--noise is {chosen.noise:g}: it must be at least 0 degrees")
+        texts = [_given(chosen.first), _given(chosen.second)]
+        declared = [_declared(words) for words in (chosen.first_is, chosen.second_is)]
         explanation = explain(
-            _given(chosen.first),
-            _given(chosen.second),
-            first_declared=_declared(chosen.first_is),
-            second_declared=_declared(chosen.second_is),
+            *texts,
+            first_declared=declared[0],
+            second_declared=declared[1],
             first_program=chosen.first_program,
             second_program=chosen.second_program,
             noise=math.radians(chosen.noise),

@@ -457,9 +457,8 @@ def program_named(words):
         If no program or several programs match.
     """
     given = words.casefold()
-    matches = [program for program in PROGRAMS if program.casefold() == given] or [
-        program for program in PROGRAMS if f" {given}" in f" {program.casefold()}"
-    ]
+    exact = [program for program in PROGRAMS if program.casefold() == given]
+    matches = exact or [program for program in PROGRAMS if f" {given}" in f" {program.casefold()}"]
     if len(matches) != 1:
         near = get_close_matches(given, " ".join(PROGRAMS).casefold().split(), 1, 0.7)
         raise ValueError(

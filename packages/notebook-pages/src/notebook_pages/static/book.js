@@ -18,6 +18,7 @@
   };
   // Load the typefaces of the whole page first: a face that came later would cause its text to be laid out again.
   const faces = () => Promise.all(allFaces.map((face) => document.fonts.load(face))).catch(() => {});
+  const aWhile = () => new Promise((resolve) => setTimeout(resolve, 3000));
   const frame = () => new Promise(requestAnimationFrame);
   let ran;
   window.figuresRan = new Promise((end) => { ran = end; }); // for scripts that need the figures
@@ -30,7 +31,7 @@
       document.head.append(Object.assign(document.createElement("script"), { src, async: false, onload: end, onerror: end })); // in their order
     }))));
     if (!later.length) return;
-    await Promise.race([faces(), new Promise((resolve) => setTimeout(resolve, 3000))]);
+    await Promise.race([faces(), aWhile()]);
     whenIdle(goOn, { timeout: 200 });
   };
   if (!later.length) whole();
@@ -93,7 +94,8 @@ addEventListener("load", () => requestAnimationFrame(() => {
 const watch = new ResizeObserver((entries) => {
   // A folded box has no size, and is checked when it is unfolded.
   const boxes = entries.filter(({ contentRect }) => contentRect.width).map(({ target }) => {
-    return [target, target.scrollWidth > target.clientWidth + 1 || (!target.matches(".math-box, figure") && target.scrollHeight > target.clientHeight)];
+    const wide = target.scrollWidth > target.clientWidth + 1;
+    return [target, wide || (!target.matches(".math-box, figure") && target.scrollHeight > target.clientHeight)];
   });
   for (const [target, scrolls] of boxes) {
     const words = target.matches(".math-box") ? "Wide equation" : target.matches("figure") && "Wide figure";

@@ -136,7 +136,8 @@
     const shapes = figures.map(shapeOf);
     const shape = shapes.reduce((sum, shape) => sum + shape.shape, 0);
     const panel = shapes.reduce((sum, part) => sum + part.panel, 0);
-    const [wide, high] = [article.clientWidth - 2 * GAP, article.clientHeight - GAP - parseFloat(getComputedStyle(article).paddingBottom)];
+    const foot = parseFloat(getComputedStyle(article).paddingBottom);
+    const [wide, high] = [article.clientWidth - 2 * GAP, article.clientHeight - GAP - foot];
     const area = (width, height) => Math.min(height, Math.max(0, width - panel) / shape) ** 2 * shape;
     // Words may be smaller or in a narrower column for the sake of the drawing, but not by much.
     const worth = ({ width, height, size, tall }) => area(width, height) * size ** 0.8 * (tall ? 0.75 : 1);
@@ -356,7 +357,8 @@
     if (history.state?.lecture !== undefined) history.back();
   };
   addEventListener("popstate", () => root.classList.contains("lecture") && history.state?.lecture === undefined && end());
-  button.addEventListener("click", () => (root.classList.contains("lecture") ? end() : begin()));
+  const toggle = () => (root.classList.contains("lecture") ? end() : begin());
+  button.addEventListener("click", toggle);
 
   // ---- keys, clicks and touches ----
   const TYPING = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable], .cm-editor";

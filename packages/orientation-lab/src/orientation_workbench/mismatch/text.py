@@ -201,9 +201,10 @@ def _columns(text):
         which, more = columns
         kept = [[row[column] for column in which] for row in table]
         if all(_PATTERNS["whole number"].search(field) for row in kept for field in row):
+            half = _half([field for row in kept for field in row])
             return (
                 [list(map(float, row)) for row in kept],
-                _half([field for row in kept for field in row]),
+                half,
                 more | _unit_in(line.replace("_", " ")),
             )
     return None
@@ -426,9 +427,8 @@ def _kinds(numbers, kind, doubt, name):
             )
         kinds = (kind,)
     elif count == 4:
-        kinds = (
-            ("quaternion",) if _all_unit(numbers, doubt + NORMALISED / 2) else ("axis and angle",)
-        )
+        unit = _all_unit(numbers, doubt + NORMALISED / 2)
+        kinds = ("quaternion",) if unit else ("axis and angle",)
     else:
         kinds = ("matrix",) if count == 9 else ("Euler angles", "rotation vector")
     if kinds == ("matrix",):

@@ -21,7 +21,8 @@ async function take(tools, parts) {
     // Otherwise the browser may delete it when it needs space. Some browsers ask the reader, which may take time.
     navigator.storage?.persist?.().catch(() => {});
   } catch (error) {
-    tools.say(`That did not work: ${error.name === "QuotaExceededError" ? "this browser has no room left for the book" : error.message}. Nothing was changed.`);
+    const full = error.name === "QuotaExceededError";
+    tools.say(`That did not work: ${full ? "this browser has no room left for the book" : error.message}. Nothing was changed.`);
   }
   tools.progress(null);
 }

@@ -260,7 +260,8 @@ class Page {
       this.whole = true;
       this.empty(); // every cell is added in its order
     }
-    const before = this.cells.slice(0, cell?.number).filter((other) =>
+    const upTo = cell ? cell.number : this.cells.length;
+    const before = this.cells.slice(0, upTo).filter((other) =>
       other !== cell && !(cell && (other.ran || other.stopped || this.atWork(other))) && !(this.leftOut(other) && !(cell?.kind.skip)));
     for (const next of cell ? [...before, cell] : before) {
       if (!this.queue.includes(next)) {

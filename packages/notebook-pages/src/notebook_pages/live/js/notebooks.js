@@ -81,7 +81,8 @@ export function bookCells(notebook) {
     }));
   }
   // Notebooks from elsewhere have no stamp: the names that graders use identify their cells.
-  const names = nameCells(codes.map((cell) => ({ name: cell.metadata?.nbgrader?.grade_id, original: text(cell.source) })));
+  const graded = (cell) => cell.metadata?.nbgrader?.grade_id;
+  const names = nameCells(codes.map((cell) => ({ name: graded(cell), original: text(cell.source) })));
   return codes.map((cell, k) => ({ cell, name: names[k], text: text(cell.source), original: null }));
 }
 
@@ -106,7 +107,8 @@ export function bringTogether(page, copy, originals) {
     const last = agreement[name] ?? original;
     const copyMoved = fingerprint(there) !== last;
     const here = entry ? fingerprint(entry.code.trimEnd()) : original;
-    const pageWins = here !== last && (!copyMoved || (entry?.at ?? 0) > Date.parse(copy.last_modified));
+    const pageMoved = here !== last;
+    const pageWins = pageMoved && (!copyMoved || (entry?.at ?? 0) > Date.parse(copy.last_modified));
     if (pageWins) {
       const source = entry?.code ?? originals?.[name];
       if (!originals || source === undefined) continue;

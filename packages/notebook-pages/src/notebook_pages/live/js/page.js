@@ -145,7 +145,8 @@
   // Python waits for the first run. Until the editor is there, a text field takes the input, also from an input method.
   const makeField = (number) => {
     const code = boxes[number].querySelector(".cell_input > div");
-    const field = make("textarea", { className: "live-field", rows: 1, spellcheck: false, autocapitalize: "off", placeholder: " ", ariaLabel: `Code of cell ${number + 1}` });
+    const ariaLabel = `Code of cell ${number + 1}`;
+    const field = make("textarea", { className: "live-field", rows: 1, spellcheck: false, autocapitalize: "off", placeholder: " ", ariaLabel });
     field.addEventListener("compositionstart", () => {
       field.composed = new Promise((resolve) => field.addEventListener("compositionend", () => setTimeout(resolve), { once: true }));
     });

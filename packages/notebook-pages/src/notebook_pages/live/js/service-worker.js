@@ -19,7 +19,8 @@ function isolated(answer) {
   if (answer.status === 0 || answer.redirected) return answer; // the browser follows a redirection by a new request
   const headers = new Headers(answer.headers);
   for (const [name, value] of Object.entries(ISOLATED)) headers.set(name, value);
-  return new Response([101, 204, 205, 304].includes(answer.status) ? null : answer.body, { status: answer.status, statusText: answer.statusText, headers });
+  const empty = [101, 204, 205, 304].includes(answer.status);
+  return new Response(empty ? null : answer.body, { status: answer.status, statusText: answer.statusText, headers });
 }
 
 // Whether the address is one of the book's own, as below a root there may be others. ``self.bookHolds`` is what

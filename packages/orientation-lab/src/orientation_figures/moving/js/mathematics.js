@@ -198,7 +198,9 @@ export function quaternionAt(angle, passed, part) {
 
 // Replace decimal commas by points, as `_decimal_points` of mismatch/text.py does.
 export function decimalPoints(text) {
-  const numbers = text.match(/\d+(?:,\d+)+/g) ?? [], pair = /^(?=.*\d,\d)[^A-Za-z\d]*\d[\d,]*\s[\s,]*[-+]?\d[\d,]*[^A-Za-z\d]*$/;
-  if (/\d\.|\.\d/.test(text) || numbers.length < 2 || numbers.some((number) => number.split(',').length > 2) || text.split('\n').some((line) => pair.test(line))) return text;
+  const numbers = text.match(/\d+(?:,\d+)+/g) ?? [];
+  const pair = /^(?=.*\d,\d)[^A-Za-z\d]*\d[\d,]*\s[\s,]*[-+]?\d[\d,]*[^A-Za-z\d]*$/;
+  const separated = numbers.some((number) => number.split(',').length > 2) || text.split('\n').some((line) => pair.test(line));
+  if (/\d\.|\.\d/.test(text) || numbers.length < 2 || separated) return text;
   return text.replace(/(?<=\d),(?=\d)/g, '.');
 }
