@@ -60,8 +60,10 @@ def test_a_cell_that_failed_leaves_nothing_to_be_called_right(kernel, written, e
 
 
 def test_a_cell_that_failed_says_nothing_of_other_answers(kernel):
-    assert kernel("B_C_N = betta") == "NameError"
-    assert "The cell that sets `B_C_N` stopped with an error. Correct and run it" in kernel(CHECK)
+    assert kernel("lost_C_N = betta") == "NameError"
+    assert "The cell that sets `lost_C_N` stopped with an error. Correct and run it" in kernel(
+        CHECK.replace("B_C_N", "lost_C_N")
+    )
     kernel(RIGHT)
     assert kernel("A_C_N = sm.Matrix([betta])") == "NameError"
     assert "Correct" in kernel(CHECK)

@@ -293,8 +293,8 @@ def test_where_nothing_can_be_written_commands_say_so(statics, tmp_path, monkeyp
     (course / "build").write_text("in the way")
     monkeypatch.chdir(course)
     for command, said in (
-        (["selftest"], "File exists: .*build"),
-        (["try", "first-steps"], "File exists: .*build"),
+        (["selftest"], "We cannot write the page '.*build.selftest.html'"),
+        (["try", "first-steps"], "We cannot write the page '.*build.try.html'"),
         (["new", "build/inside"], "Not a directory: .*build"),
         (["wheels", "build/inside"], "Not a directory: .*build"),
     ):

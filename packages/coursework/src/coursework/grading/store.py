@@ -169,7 +169,8 @@ class Store:
     def rename(self, student: str, assignment: str, name: str) -> None:
         """Let a record count for another name, until the work has been graded under that name."""
         record = record_in(self.put_aside(student, assignment))
-        self.stage(replace(record, student=name, key=""))
+        # The new name may have other variants of the questions.
+        self.stage(replace(record, student=name, key="", cases={}))
         self.promote(name, assignment)
 
     def all(self) -> Iterator[Record]:
