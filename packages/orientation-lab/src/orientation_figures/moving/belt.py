@@ -4,8 +4,8 @@ import math
 
 from orientation.quaternions import dcm_from_quaternion
 
-from ..vectors import quaternion_at
 from .figure import MovingFigure
+from .pictures.belt import quaternion_at
 from .state import Numbers
 
 FULL = 4 * math.pi

@@ -150,8 +150,8 @@ def with_all_modules(kind, folder):
     """Write the modules for a figure of ``BUILT`` into a folder; return the file to bundle."""
     for package in ("moving", kind):
         shutil.copytree(FOLDER.parent / package / "js", folder / package / "js")
-    for name, path in DESCRIBED.items():
-        (folder / "moving" / "js" / f"{name}.js").write_text(translated(path), "utf8")
+    for name in DESCRIBED:
+        (folder / "moving" / "js" / f"{name}.js").write_text(source(name), "utf8")
     return folder / kind / "js" / BUILT[kind]
 
 

@@ -1,5 +1,5 @@
-import { add, degrees, fullTurns, quaternionAt, radians, scale } from './mathematics.js';
-import { belt, picture, SIZE } from './belt_picture.js';
+import { add, degrees, radians, scale } from './mathematics.js';
+import { belt, fullTurns, picture, quaternionAt, SIZE } from './belt_picture.js';
 import { button, change, element, fixed, follow, glide, group, liveText, numberTable, onceAFrame,
   open, plain, readout, Sheet, slider, stage } from './shared.js';
 

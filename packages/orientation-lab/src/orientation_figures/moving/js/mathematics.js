@@ -180,22 +180,6 @@ export function slerp(from, to, part) {
   return unit(add(scale(Math.sin((1 - part) * angle), from), scale(Math.sin(part * angle), to)));
 }
 
-// A belt between a wall and a plate that has turned by an angle, passed round the plate so many times.
-
-// Return the number of full rotations of the plate if it is 1 or 2, else 0.
-export const fullTurns = (angle) => [1, 2].find((turns) => Math.abs(angle - 2 * turns * Math.PI) < 1e-8) ?? 0;
-
-// Return the unit quaternion of the belt at a share of its length, as `quaternion_at` of vectors.py does.
-export function quaternionAt(angle, passed, part) {
-  const share = Math.min(1, Math.max(0, 1.5 * part - 0.25)), turns = fullTurns(angle);
-  if (turns === 2) {
-    const tilt = passed * Math.PI / 2, way = 2 * Math.PI * share, size = Math.cos(tilt), down = 1 - Math.cos(way);
-    return [1 - size * size * down, 0, size * Math.sin(way), size * Math.sin(tilt) * down];
-  }
-  const tilt = turns === 1 ? passed * Math.PI : 0, half = angle * share / 2;
-  return [Math.cos(half), 0, Math.cos(tilt) * Math.sin(half), Math.sin(tilt) * Math.sin(half)];
-}
-
 // Replace decimal commas by points, as `_decimal_points` of mismatch/text.py does.
 export function decimalPoints(text) {
   const numbers = text.match(/\d+(?:,\d+)+/g) ?? [];

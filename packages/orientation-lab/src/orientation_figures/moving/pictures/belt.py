@@ -1,8 +1,10 @@
 """The picture of a plate on a belt."""
 
+import math
+
 from orientation.quaternions import dcm_from_quaternion
 
-from ...vectors import IDENTITY, add, dot, in_degrees, quaternion_at, scale
+from ...vectors import IDENTITY, add, dot, in_degrees, scale
 
 SIZE = 96
 LENGTH = 3.0
@@ -10,6 +12,32 @@ WIDTH = 0.19
 PIECES = 72
 WALL = (0.9, 0.06, 0.9)
 PLATE = (0.62, 0.09, 0.44)
+
+
+def full_turns(angle):
+    """Return the number of full rotations of the plate if it is 1 or 2, else 0."""
+    numbers = [turns for turns in [1, 2] if abs(angle - 2 * math.pi * turns) < 1e-8]
+    return numbers[0] if len(numbers) else 0
+
+
+def quaternion_at(angle, passed, part):
+    """Return the unit quaternion of the belt at a share of its length.
+
+    Its first and last sixth stay straight, so that the plate keeps away from the wall.
+    """
+    share = min(1, max(0, 1.5 * part - 0.25))
+    turns = full_turns(angle)
+    if turns == 2:
+        # Circles through 1 on the sphere of quaternions, from a great circle down to a point.
+        tilt, way = passed * math.pi / 2, 2 * math.pi * share
+        size = math.cos(tilt)
+        return [
+            1 - size * size * (1 - math.cos(way)), 0, size * math.sin(way),
+            size * math.sin(tilt) * (1 - math.cos(way))
+        ]  # fmt: skip
+    # Half circles from 1 to -1, from one side to the other.
+    tilt, half = passed * math.pi if turns == 1 else 0, angle * share / 2
+    return [math.cos(half), 0, math.cos(tilt) * math.sin(half), math.sin(tilt) * math.sin(half)]
 
 
 def belt(angle, passed):

@@ -5,8 +5,9 @@
 // z-x-y: the first motor rotates about a_z, the second about b_x, the third about c_y, and the lens looks along d_y. So
 // the three angles are longitude, height and roll.
 import { AXES, IDENTITY, SEQUENCES, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
-  dcmFromQuaternion, dot, length, multiply, quaternionAt, quaternionFromDcm, scale, several, simpleDcm, slerp, subtract,
+  dcmFromQuaternion, dot, length, multiply, quaternionFromDcm, scale, several, simpleDcm, slerp, subtract,
   times, transpose, unit, wrapped } from '../../moving/js/mathematics.js';
+import { quaternionAt } from '../../moving/js/belt_picture.js';
 import { STOPS } from './stops.js';
 
 const PI = Math.PI;
@@ -230,6 +231,7 @@ export const GENERIC = poses([28, 24, -22])[0];
 export const CROOKED = poses([84, 32, -58])[0];
 export const FROM = poses([-80, 60, -30])[0], TO = poses([100, 65, 40])[0];   // of stop 14
 const SWING = deg(90), TILT = deg(70), FOUR = unit([0.48, 0.39, 0.79]);   // of stop 6, and the line of stop 12
+const POSE = deg(108);   // of stop 12, in which the text leaves the camera twice, one turn apart
 // At the star, and from there to the second triple of its angles, one motor after the other.
 const TOWARDS_STAR = poses([0, 0, -30], [22, 0, -30], [22, 36, -30], [22, 36, 0], [22, 36, 0], [202, 36, 0], [202, 144, 0], [202, 144, 180]);
 export const CABLE = { wall: 2.05, start: 0.5 };
@@ -254,7 +256,7 @@ export const COURSE = {
   lock: (t) => ({ angles: through(poses([0, 20, 0], [0, 90, 0], [0, 90, 0], [-50, 90, 50]), t, [0.01, 0.12, 0.26, 0.42]) }),
   'one-turn': (t, start) => ({ part: between(t, 0.04, 0.3), start }),
   'two-mirrors': (t) => ({ angles: ZERO, together: 0.55 - 0.35 * between(t, 0.27, 0.36) + 0.8 * between(t, 0.53, 0.66), apart: (35 + 30 * between(t, 0.38, 0.48)) / 90 }),
-  'four-numbers': (t) => ({ whole: 2 * PI * (0.15 + 0.15 * between(t, 0.01, 0.12) + between(t, 0.52, 0.68)), laid: between(t, 0.26, 0.32),
+  'four-numbers': (t) => ({ whole: POSE * (0.5 + 0.5 * between(t, 0.01, 0.12)) + 2 * PI * between(t, 0.52, 0.68), laid: between(t, 0.26, 0.32),
     pairs: t > 0.75 ? 1 : 0, faded: (t > 0.25 && t < 0.5) || t > 0.75 ? 1 : 0, joined: between(t, 0.79, 0.91) }),
   'not-home': (t) => ({ angles: ZERO, turn: 2 * PI * (between(t, 0.01, 0.12) + between(t, 0.6, 0.66)),
     passed: t < 0.6 ? between(t, 0.4, 0.45) + between(t, 0.53, 0.59) : between(t, 0.68, 0.75) }),
@@ -542,7 +544,7 @@ function fourMirrors(scene, joined) {
 }
 
 // How visible the four mirrors are, which take the place of two that have been turned as the text left them.
-export const pairsOf = (s) => (s.free || Math.abs(s.whole - 2.6 * PI) > 0.01 ? 0 : s.pairs);
+export const pairsOf = (s) => (s.free || Math.abs(s.whole - POSE - 2 * PI) > 0.01 ? 0 : s.pairs);
 
 // The line and the angle of stop 12: those of the text, or of the pose in the reader's hand.
 export const turnOf = (s) => (s.free ? axisOf(s.angles) : [FOUR, s.whole]);

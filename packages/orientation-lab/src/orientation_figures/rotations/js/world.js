@@ -1,9 +1,10 @@
 // The figure of the essay in the page: it stays while the text scrolls past and moves it, and the reader may take hold
 // of it at any moment. What is shown follows the goal smoothly, a little later.
 import { carriedBy, fragmentOf } from '../../moving/js/address.js';
-import { AXES, add, dot, fullTurns, length, quaternionFromDcm, scale, several, times, transpose, unit, wrapped } from '../../moving/js/mathematics.js';
+import { AXES, add, dot, length, quaternionFromDcm, scale, several, times, transpose, unit, wrapped } from '../../moving/js/mathematics.js';
 import { calm, element, put, words, write } from '../../moving/js/shared.js';
 import { LABELS } from '../../moving/js/glyphs.js';
+import { fullTurns } from '../../moving/js/belt_picture.js';
 import { Sensors } from '../../moving/js/phone.js';
 import { AT_READER, COURSE, CROOKED, EYES, FROM, GENERIC, LASTS, REST, STAR, TO, anglesNear, apart, axisOf, dcmOf, deg, frames, lookOf, motion, pairsOf, placed,
   project, sceneOf, turnOf, turned, turnedAlong, turnedFrame, WHOLE_WAYS } from './scene.js';
@@ -355,8 +356,10 @@ class World {
 
   cable() {
     const { turn, passed } = this.state, once = fullTurns(turn) === 1, times = Math.round(passed);
-    if (turn < 1e-8) return `The camera is as it was, and the cable is flat.${passed > 0.02 ? ' You can pass it round after a whole turn.' : ''}`;
-    if (!fullTurns(turn)) return `The camera has turned ${say(turn)}, and the cable has followed.${passed > 0.02 ? ' You can pass it round after a whole turn.' : ''}`;
+    if (!fullTurns(turn)) {
+      return (turn < 1e-8 ? 'The camera is as it was, and the cable is flat.' : `The camera has turned ${say(turn)}, and the cable has followed.`)
+        + (passed > 0.02 ? ' You can pass it round after a whole turn.' : '');
+    }
     if (Math.abs(passed - times) > 0.01) return 'The camera stands still while the cable is passed round it.';
     if (!times) return `After ${once ? 'one turn' : 'two turns'} the camera is as it was. The cable is not: it is twisted by ${once ? 'one turn' : 'two turns'}.`;
     if (times === 2) return once ? 'Passed round twice: the first twist is back. It will not go away.' : 'Passed round twice: two turns again, the other way.';
@@ -430,6 +433,7 @@ class World {
     const at = this.at(event), found = this.partAt(at);
     if (!found && event.pointerType === 'touch') return;
     this.held = { pointer: event.pointerId, at, ...found };
+    this.swing = [];
     if (found && this.state.stop !== 'not-home') this.seize();
     this.canvas.setPointerCapture(event.pointerId);
     put(this.canvas, 'data-held', '');
@@ -465,7 +469,7 @@ class World {
     const axis = times(transpose(this.picture.view), [-up, right, 0]);
     const before = frames(goal.angles).D, dcm = turnedFrame(axis, turn, before);
     goal.angles = anglesNear(dcm, goal.angles);
-    this.swing = [...(this.swing ?? []).slice(-20), { at: when, by: scale(turn, unit(axis)) }];
+    this.swing = [...this.swing.slice(-20), { at: when, by: scale(turn, unit(axis)) }];
   }
 
   // Move an arm as far along its circle as the pointer moves.
@@ -488,7 +492,7 @@ class World {
     if (Math.abs(goal.turn - round) < deg(12)) goal.turn = round;   // no hand stops exactly after a whole turn
     if (part === 'D' && this.state.stop === 'it-moves') {
       // Throw it at the speed of the last tenth of a second.
-      const lately = (this.swing ?? []).filter(({ at }) => event.timeStamp - at < 100).map(({ by }) => by), last = this.swing?.at(-1);
+      const lately = this.swing.filter(({ at }) => event.timeStamp - at < 100).map(({ by }) => by), last = this.swing.at(-1);
       const rate = lately.length ? scale(10, add(...lately)) : [0, 0, 0];
       if (last) this.throwIt(length(rate) > 0.4 ? rate : scale(0.4, unit(last.by)));
     }
