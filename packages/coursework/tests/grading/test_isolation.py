@@ -100,6 +100,11 @@ core.append(library.prctl(3, 0, 0, 0, 0))
     assert said[:3] == [1, 1, 0] and (len(said) == 3 or said[3] == 0)
 
 
+def test_a_layer_that_does_not_exist_is_an_error():
+    with pytest.raises(ValueError, match="unknown layers \\['armour'\\]"):
+        Sandbox(without=["armour"])
+
+
 # ---- other users, with bubblewrap and without
 
 AS_NOBODY = """

@@ -638,6 +638,11 @@ def test_a_grader_that_is_killed_while_it_starts_leaves_nothing(environment):
     assert folders_in(environment["TMPDIR"]) == []
 
 
+def test_a_job_that_is_no_job_is_refused(sandbox):
+    with pytest.raises(TypeError, match="strings"):
+        sandbox.run({"id": 1, "cells": [], "questions": {}})
+
+
 def test_a_large_notebook_and_a_large_answer_come_through(sandbox):
     source = (
         "import sympy\n# "

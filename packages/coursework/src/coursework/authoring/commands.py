@@ -140,7 +140,7 @@ def release(only: Sequence[str], sources: Path | None) -> None:
     asked = {name: question for notebook in made for name, question in notebook.asked.items()}
     print(*counted(asked), sep="\n")
     if course.roster:
-        print("For students who gave up, after the deadline: worked_solution(question, code), with")
+        print("After the deadline, students can open worked solutions with these codes:")
         print(*(f"  {notebook.name}: {notebook.code}" for notebook in made), sep="\n")
 
 

@@ -93,9 +93,8 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
     if not folder.is_dir():
         raise ArchiveRefused(f"There is no folder {folder} in {Path.cwd()}.")
     files = _files_in(archive_file)
-    course = _course_of(files.pop(MANIFEST, b"{}"))
-    before, archives = _handed_out(folder)
-    own = _course_of((folder / MANIFEST).read_bytes()) if archives else course
+    course = Fields(json.loads(files.pop(MANIFEST, "{}")), MANIFEST).maybe("course", text)
+    before, archives, own = _handed_out(folder)
     if own and course and own != course:
         raise ArchiveRefused(
             f"{archive_file} belongs to the course {course!r}, and this folder to {own!r}. Give "
@@ -285,15 +284,11 @@ def _put_beside(place: Path, data: bytes, before: Mapping[str, str]) -> str:
     return beside.name
 
 
-def _course_of(content: bytes) -> str | None:
-    """Return the course that a manifest names."""
-    return Fields(json.loads(content), MANIFEST).maybe("course", text)
+def _handed_out(folder: Path) -> tuple[dict[str, str], list[str], str | None]:
+    """Return the files released into a folder with their digests, the archives in order, and the
+    course.
 
-
-def _handed_out(folder: Path) -> tuple[dict[str, str], list[str]]:
-    """Return the files released into a folder with their digests, and the archives in order.
-
-    Both are empty if the release was before manifests.
+    Nothing is known if the release was before manifests.
     """
     try:
         about = Fields(json.loads((folder / MANIFEST).read_text("utf8")), MANIFEST)
@@ -302,10 +297,10 @@ def _handed_out(folder: Path) -> tuple[dict[str, str], list[str]]:
         archives = about.maybe("archives", many(text)) or (_digest_of_all(files),)
     except (OSError, ValueError):
         # Files of unknown origin count as the student's.
-        return {}, []
+        return {}, [], None
     if format != FORMAT:
         raise ArchiveRefused(
             f"{MANIFEST} in this folder has format {format}, but the installed coursework reads "
             f"{FORMAT}. Install the package in this folder and try again. We changed nothing."
         )
-    return files, list(archives)
+    return files, list(archives), about.maybe("course", text)

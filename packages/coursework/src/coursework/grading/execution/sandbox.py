@@ -121,6 +121,11 @@ class Sandbox(contextlib.AbstractContextManager["Sandbox"]):
         allow_weak_isolation: bool = False,
         without: Collection[str] = (),
     ) -> None:
+        unknown = set(without) - set(LAYERS)
+        if unknown:
+            raise ValueError(
+                f"unknown layers {sorted(unknown)}: the layers are {', '.join(LAYERS)}"
+            )
         if not sys.platform.startswith("linux"):
             raise WeakIsolation(
                 "Isolating student code needs Linux. Elsewhere, use WSL or a container."
@@ -351,6 +356,10 @@ class _Run:
         self.damaged = 0
         self.unknown: dict[str, bool] = {}
         self.notes: list[str] = []
+        if not isinstance(job["id"], str) or not all(
+            isinstance(cell["source"], str) for cell in job["cells"]
+        ):
+            raise TypeError("the id of a job and the sources of its cells must be strings")
 
     def result(self) -> Result:
         number = len(self.job["cells"])

@@ -508,7 +508,6 @@ def fill(
         "student", "lastname", "full name", "username", "orgdefinedid", "identifier"
     )
     damaged = {_signs(file.student) for file in refused_of(marks.store) if file.student}
-    listed["nothing"] = []
     for line in range(first, len(book.lines)):
         cells = [field.says for field in book.lines[line][0]]
         if line not in students and any(cells):

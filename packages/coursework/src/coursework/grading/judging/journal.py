@@ -36,6 +36,8 @@ from ..tables import as_written, in_a_line
 FILE = "journal.jsonl"
 #: The file for the beginning of a line that was not yet complete when the machine stopped.
 CUT = "journal.cut"
+# The end of the reason of an event that was copied to another name of its student.
+WAS = "was {!r}"
 LONGEST_WORDS = 4_000
 
 #: A student, an assignment, a question.
@@ -478,7 +480,7 @@ class Journal:
                 if hasattr(event, field)
             }
             if isinstance(event, Decision | Given):
-                same["why"] = f"{event.why}; was {student!r}".removeprefix("; ")
+                same["why"] = f"{event.why}; {WAS.format(student)}".removeprefix("; ")
             copies.append(replace(event, student=name, **same))
         self.append(copies)
 

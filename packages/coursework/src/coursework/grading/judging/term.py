@@ -495,8 +495,10 @@ def read_term(path: str | Path) -> Term:
             advice = "Create it with `coursework term new`."
         elif isinstance(error, UnicodeDecodeError):
             advice = "Save the file as UTF-8."
-        elif re.search(r"hex value|escape|overwrite|declare", str(error)):
-            advice = "Write / in paths, not a backslash, and each table and entry only once."
+        elif re.search("hex value|escape", str(error)):
+            advice = "Write / in paths, not a backslash."
+        elif re.search("overwrite|declare", str(error)):
+            advice = "Write each table and each entry only once."
         raise BadTerm(f"{path}: {reason_of(error)}. {advice}") from None
     file = _File(path)
     if zone := said.get("time-zone"):

@@ -5,7 +5,7 @@ import difflib
 
 from ...checking.reply import plain_text
 from ..judging import term as of_term
-from ..judging.journal import Appeal, Decision, Exported, Given, Journal
+from ..judging.journal import WAS, Appeal, Decision, Exported, Given, Journal
 from ..store import Store
 from ..submissions.intake import refused_of
 from ..tables import in_a_line, number
@@ -39,7 +39,7 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         renamed = [
             event.student
             for (_, name), event in all_given.items()
-            if name == assignment and event.why.endswith(f"was {student!r}")
+            if name == assignment and event.why.endswith(WAS.format(student))
         ]
         if renamed:
             raise ValueError(f"{student!r} is now {renamed[-1]!r}: the marks are under that name.")
