@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import re
 from html import escape
 
 import numpy as np
@@ -103,8 +104,10 @@ class Animation:
         self.still = len(self.moments) - 1 if still is None else round(still * (frames + 1))
         self.drawings = [draw(moment) for moment in self.moments]
         self.seconds = seconds / frames
+        # Bodies keep the shades of the still while they turn.
         shapes = [
-            [(kind, shape) for kind, shape, _, _ in drawing.marks] for drawing in self.drawings
+            [(re.sub(r"shade-\d+", "shade", kind), shape) for kind, shape, _, _ in drawing.marks]
+            for drawing in self.drawings
         ]
         for moment, shape in zip(self.moments, shapes):
             if shape != shapes[0]:

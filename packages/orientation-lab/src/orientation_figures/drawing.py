@@ -219,8 +219,8 @@ class Drawing(Words):
             ]
         return np.concatenate([np.min(corners, axis=0), np.max(corners, axis=0)])
 
-    def svg(self, motions=None, bounds=None, decimals=2):
-        """Return the SVG element.
+    def svg(self, motions=None, bounds=None, decimals=2, enlarged=1):
+        """Return the SVG element, which a page may show up to ``enlarged`` times as large.
 
         An ``Animation`` gives the content of each mark's element, and its own bounds.
         """
@@ -241,7 +241,7 @@ class Drawing(Words):
         inside = (f"<defs>{glyphs}</defs>" if glyphs else "") + marks
         return (
             f'<svg viewBox="{left} {top} {right - left} {bottom - top}" '
-            f'style="max-width:{right - left}px" role="img" '
+            f'style="max-width:{enlarged * (right - left):.0f}px" role="img" '
             f'aria-label="{escape(self.alt)}">{inside.replace("@", name + "-")}</svg>'
         )
 

@@ -37,13 +37,13 @@ def aircraft_drawing(bank=np.radians(30)):
     surface((-1.5, 0, -0.1), (-1.95, 0.62, -0.16), (-2.1, 0.62, -0.16), (-1.95, 0, -0.1))
     surface((-1.4, 0, -0.14), (-1.95, 0, -0.72), (-2.15, 0, -0.72), (-1.95, 0, -0.14))
     surface((0.35, 0, 0.1), (-0.75, 1.75, -0.04), (-1.0, 1.75, -0.04), (-0.4, 0, 0.1))
-    drawing.cylinder(*place((-1.95, 0, -0.05), (-0.1, 0, 0)), 0.19, "D", 16)
+    drawing.cylinder(*place((-1.95, 0, -0.05), (-0.1, 0, 0)), 0.19, "D", 30)
     surface((0.35, 0, 0.1), (-0.75, -1.75, -0.04), (-1.0, -1.75, -0.04), (-0.4, 0, 0.1))
-    drawing.cylinder(*place((-0.1, 0, 0), (1.0, 0, 0)), 0.19, "D", 16)
+    drawing.cylinder(*place((-0.1, 0, 0), (1.0, 0, 0)), 0.19, "D", 30)
     nose = [(1.0 + 0.32 * np.sin(t), 0.19 * np.cos(t), 0) for t in np.linspace(0, np.pi, 9)]
     drawing.area(place(*nose), "D", 26)
     for side in (0.62, -0.62):
-        drawing.cylinder(*place((-0.1, side, 0.2), (0.28, side, 0.2)), 0.1, "D", 26)
+        drawing.cylinder(*place((-0.1, side, 0.2), (0.28, side, 0.2)), 0.1, "D")
     drawing.triad("D", aircraft, place((1.25, 0, 0))[0], 0.95)
     drawing.triad("N", NORTH_EAST_DOWN, -2.35 * drawing.view[0] - 0.35 * drawing.view[1], 0.75)
     return drawing
@@ -73,7 +73,7 @@ def wrist_drawing(angles=(0.3, 0.9, 0.4)):
     def place(frame, *points):
         return np.array(points, dtype=float) @ frame
 
-    drawing.cylinder(*place(np.eye(3), (0, 0, -2.0), (0, 0, -0.95)), 0.3, "F", 16)
+    drawing.cylinder(*place(np.eye(3), (0, 0, -2.0), (0, 0, -0.95)), 0.3, "F", 30)
     drawing.line(place(np.eye(3), (0, 0, -0.95), (0, 0, 1.0)), "muted", "guide")
     drawing.cylinder(*place(first, (0, 0, -0.9), (0, 0, -0.55)), 0.26, "B")
     drawing.line(place(first, (0, -0.3, -0.55), (0, -0.3, 0)), "B", "tube")
@@ -203,7 +203,7 @@ def leg_drawing(bend=np.radians(35)):
         for x, y, z in plate:
             drawing.dot(place(frame, (x, y, z + 0.08))[0], "ink", 6)
 
-    drawing.cylinder(*place(thigh, (0, 1.55, 0), (0, 0.12, 0)), 0.24, "A", 8)
+    drawing.cylinder(*place(thigh, (0, 1.55, 0), (0, 0.12, 0)), 0.24, "A", 20)
     foot = place(
         shank,
         (-0.2, -1.72, 0),
@@ -213,8 +213,8 @@ def leg_drawing(bend=np.radians(35)):
         (-0.2, -1.45, 0),
     )
     drawing.area(foot, "B", 8)
-    drawing.cylinder(*place(shank, (0, -0.12, 0), (0, -1.5, 0)), 0.19, "B", 8)
-    drawing.cylinder(*place(thigh, (0, 0, -0.2), (0, 0, 0.2)), 0.21, "muted", 16)
+    drawing.cylinder(*place(shank, (0, -0.12, 0), (0, -1.5, 0)), 0.19, "B", 20)
+    drawing.cylinder(*place(thigh, (0, 0, -0.2), (0, 0, 0.2)), 0.21, "muted", 30)
     cluster(thigh, 0.85, "A")
     cluster(shank, -0.8, "B")
     beside = np.array([1.15, 0, 0.1])

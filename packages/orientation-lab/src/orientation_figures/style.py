@@ -70,18 +70,24 @@ RULES = {
     " .guide": "stroke-width:1.3;stroke-dasharray:4 4",
     " .faint": "stroke-width:1;stroke-opacity:.45",
     " .thick": "stroke-width:3",
-    " .bare": "stroke-width:.4",
+    " .bare": "stroke:none",
     " .tube": "stroke-width:13",
-    " .core": "stroke-width:9.5;stroke:color-mix(in srgb,currentColor 22%,var(--sheet))",
+    " .core": "stroke-width:9.5;stroke:color-mix(in srgb,var(--unlit) 40%,var(--lit))",
+    " .gleam": "stroke-width:3;stroke:var(--lit)",
     " .paper": "fill:var(--sheet)",
     " .head": "fill:currentColor;stroke:none",
     " .text": "fill:currentColor;stroke:var(--sheet);stroke-width:200;paint-order:stroke",
     " [class*=fill]": "stroke-linecap:butt",
+    " [class*=shade]": "stroke-linecap:butt",
     " input": "width:55%;vertical-align:middle",
     " output": "display:block;min-height:3em",
     **{
         f" .fill-{part}": f"fill:color-mix(in srgb,currentColor {part}%,var(--sheet))"
         for part in (8, 16, 26, 38)
+    },
+    **{
+        f" .shade-{part}": f"fill:color-mix(in srgb,var(--unlit) {part}%,var(--lit))"
+        for part in range(0, 101, 10)
     },
     **{
         selector: rule
@@ -94,6 +100,14 @@ RULES = {
 }
 
 
+# Bodies in the light: on a light page less of their colour shows there, on a dark one more.
+def _lights(lit, unlit):
+    return (
+        f"--lit:color-mix(in srgb,currentColor {lit}%,var(--sheet));"
+        f"--unlit:color-mix(in srgb,currentColor {unlit}%,var(--sheet));"
+    )
+
+
 def _style():
     """Return the style sheet of every figure; a page may set ``--frame-a`` and so on."""
 
@@ -103,7 +117,9 @@ def _style():
         )
 
     rules = {
-        "": colours(LIGHT) + "--sheet:var(--pst-color-background,var(--jp-layout-color0,#fff));"
+        "": colours(LIGHT)
+        + _lights(4, 50)
+        + "--sheet:var(--pst-color-background,var(--jp-layout-color0,#fff));"
         "margin:1rem auto;text-align:center",
         **RULES,
     }
@@ -113,7 +129,7 @@ def _style():
     )
     return (
         "".join(f".orientation-figure{part}{{{rule}}}" for part, rule in rules.items())
-        + f"{dark}{{{colours(DARK)}}}"
+        + f"{dark}{{{colours(DARK)}{_lights(46, 6)}}}"
     )
 
 
@@ -122,9 +138,10 @@ def style_of_picture(classes):
 
     Bodies keep white in their colours. Letters have no border, which would be of the page's colour.
     """
+    pale = {**EITHER, "lit": "#fff", "unlit": "color-mix(in srgb,currentColor 50%,#fff)"}
     return re.sub(
         r"var\(--(\w+)\)",
-        lambda name: EITHER.get(name[1], "#fff"),
+        lambda name: pale.get(name[1], "#fff"),
         "".join(
             f"{part[1:]}{{{rule}}}"
             for part, rule in RULES.items()

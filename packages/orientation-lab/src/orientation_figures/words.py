@@ -24,6 +24,8 @@ HEADS = {
     "F": DIAMOND,
     "Z": TRIANGLE,
 }
+# Where the light comes from: right, up and towards the reader.
+LIGHT = (-0.45, 0.75, 0.485)
 # A cubic whose inner points are this far along the tangents is a quarter of a circle.
 ROUND = 0.5523
 # The largest angle of an arc, in radians, for one cubic.
@@ -44,8 +46,8 @@ def turned(axis, angle, vector):
 
 
 def layers(kind):
-    """Return the styles of a line, drawn one above the other; a tube has a core."""
-    return [kind, f"{kind} core"] if kind.startswith("tube") else [kind]
+    """Return the styles of a line, drawn one above the other; a tube has a core that gleams."""
+    return [kind, f"{kind} core", f"{kind} gleam"] if kind.startswith("tube") else [kind]
 
 
 def half_round(u, v):
@@ -67,6 +69,11 @@ class Words:
     def depth_of(self, points):
         """Return how near the middle of ``points`` is to the reader."""
         return dot(self.view[2], add(*points)) / len(points)
+
+    def shade(self, normal):
+        """Return the per cent of shade on a surface, in steps of ten."""
+        lit = dot(LIGHT, [dot(row, unit(normal)) for row in self.view])
+        return 10 * math.floor(5 - 4.5 * lit)
 
     # Lines, areas and labels.
 
@@ -284,26 +291,46 @@ class Words:
     def box(self, dcm, size, origin=(0, 0, 0), colour="ink"):
         """Draw a box centred at ``origin``, with edges ``size`` along the rows of ``dcm``."""
         half = [scale(size[k] / 2, row) for k, row in enumerate(dcm)]
-        for i, fill in enumerate([26, 16, 8]):
+        for i in range(3):
             u, v = half[(i + 1) % 3], half[(i + 2) % 3]
             corners = [add(u, v), subtract(v, u), scale(-1, add(u, v)), subtract(u, v)]
             for outward in [half[i], scale(-1, half[i])]:
                 seen = 1 if dot(outward, self.view[2]) > 0 else 0
                 face = [add(origin, outward, scale(seen, corner)) for corner in corners]
-                self.area(face, colour, fill)
+                places, shade = [self.on_sheet(point) for point in face], self.shade(outward)
+                self.path("MLLLZ", places, f"shade-{shade} {colour}", self.depth_of(face))
         return self
 
-    def cylinder(self, start, end, radius, colour="ink", fill=26):
-        """Draw a cylinder between the middles of its two round ends."""
+    def cylinder(self, start, end, radius, colour="ink", shade=50):
+        """Draw a cylinder between the middles of its two round ends.
+
+        ``shade``, in per cent, is that of most of its side.
+        """
         facing, depth = dot(unit(subtract(end, start)), self.view[2]), self.depth_of([start, end])
         near, far, pixels = self.on_sheet(start), self.on_sheet(end), radius * self.size
         along = unit(subtract(far, near)) if abs(facing) < 0.9999 else [1, 0]
         bulge, side = scale(pixels * abs(facing), along), scale(pixels, [-along[1], along[0]])
         front = [add(far, point) for point in half_round(side, bulge)]
         back = [add(near, point) for point in half_round(scale(-1, side), scale(-1, bulge))]
-        self.path("MCCLCCZ", [*front, *back], f"fill-{fill} {colour}", depth)
-        for place, seen in [[near, facing < 0], [far, facing > 0]]:
-            shown = 1 if seen else 0
+        self.path("MCCLCCZ", [*front, *back], f"shade-{shade} {colour}", depth)
+        # A bright stripe where the side faces the light, and a dark one along the other edge.
+        across = dot(LIGHT, [-along[1], -along[0], 0])
+        toward = dot(
+            LIGHT, [-facing * along[0], facing * along[1], math.sqrt(1 - min(1, facing**2))]
+        )
+        middle, edge = math.atan2(across, toward), 1.57 if across < 0 else -1.57
+        bright, dark = max(-1.1, min(1.1, middle)), max(-1.57, min(1.57, middle + 0.85 * edge))
+        for first, last, part in [
+            [bright - 0.2, bright + 0.2, max(0, shade - 40)],
+            [dark, edge, shade + 20],
+        ]:
+            corners = [
+                add(place, scale(math.sin(at), side), scale(-facing * pixels * math.cos(at), along))
+                for place, at in [[near, first], [near, last], [far, last], [far, first]]
+            ]
+            self.path("MLLLZ", corners, f"shade-{part} bare {colour}", depth + 5e-7)
+        for place, out in [[near, subtract(start, end)], [far, subtract(end, start)]]:
+            shown = 1 if dot(out, self.view[2]) > 0 else 0
             u, v = scale(shown, bulge), scale(shown, side)
-            self.ellipse(place, u, v, f"fill-8 {colour}", depth + 1e-6)
+            self.ellipse(place, u, v, f"shade-{self.shade(out)} {colour}", depth + 1e-6)
         return self

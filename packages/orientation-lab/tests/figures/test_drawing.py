@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from orientation import dcm_from_axis_angle, dcm_from_body_fixed, simple_dcm
+from orientation import dcm_from_axis_angle, dcm_from_body_fixed, random_orientations, simple_dcm
 from orientation_figures import drawing as drawings
 from orientation_figures.animation import Animation, one_after_another
 from orientation_figures.drawing import (
@@ -182,8 +182,26 @@ def test_bodies_show_the_faces_that_look_at_the_reader():
     faces = Drawing(ALT).box(np.eye(3), (1, 1, 1)).marks
     seen = [np.ptp(place, axis=0).max() > 0 for _, _, place, _ in faces]
     assert seen == [True, False] * 3  # the camera stands where x, y and z are positive
-    caps = Drawing(ALT).cylinder((0, 0, 0), (0, 0, 1), 0.3).marks[1:]
+    caps = Drawing(ALT).cylinder((0, 0, 0), (0, 0, 1), 0.3).marks[-2:]
     assert [np.ptp(place, axis=0).max() > 0 for _, _, place, _ in caps] == [False, True]
+
+
+def test_light_comes_from_the_upper_left_wherever_the_reader_stands():
+    for view in random_orientations(20, 3):
+        drawing = Drawing(ALT, view)
+        right, up, toward = view
+        shades = [drawing.shade(side) for side in (up - right, up, toward, -up, right - up)]
+        assert shades == sorted(shades) and shades[0] == 10 and shades[-1] == 80
+        # The bright stripe of a cylinder that lies across the picture is above its dark one.
+        _, bright, dark, *_ = drawing.cylinder(-right, right, 0.3).marks
+        assert bright[0] < dark[0] and bright[2][:, 1].mean() < 0 < dark[2][:, 1].mean()
+
+
+def test_a_body_that_turns_can_be_animated():
+    def turned_box(progress):
+        return Drawing(ALT).box(simple_dcm("z", progress), (1, 0.8, 0.3))
+
+    assert "shade-" in Animation(turned_box, [("It turns", 1.0)])._repr_html_()
 
 
 def test_a_cylinder_touches_its_ends():

@@ -54,7 +54,7 @@ class ChallengeFigure(MovingFigure):
 
     kind = "challenge"
     sheet = (-180, -172, 180, 172)
-    room = (545, 885)
+    room = (610, 888)
     task = traitlets.Enum(("match", "undo", "ghost"), "match").tag(sync=True, state=True)
     given = Turns((("z", math.pi / 2), ("x", math.pi / 3)), most=3).tag(sync=True, state=True)
     turns = Turns((), fewest=0, most=20).tag(sync=True, state=True)

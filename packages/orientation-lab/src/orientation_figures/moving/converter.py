@@ -104,7 +104,7 @@ class ConverterFigure(MovingFigure):
 
     kind = "converter"
     sheet = (-180, -172, 180, 172)
-    room = (862, 1270)
+    room = (893, 1232)
     quaternion = Numbers(AT_FIRST, (4,), 1.0).tag(sync=True, state=True)
     source = Side(FIRST | {"program": "SciPy"}).tag(sync=True, state=True)
     target = Side(

@@ -130,4 +130,4 @@ def svg_on(sheet, drawing):
     """Return the SVG element of a drawing, as large as the sheet."""
     left, top, right, bottom = sheet
     # The drawing adds a margin of 8 pixels to these bounds.
-    return drawing.svg(bounds=(left + 8, top + 8, right - 8, bottom - 8))
+    return drawing.svg(bounds=(left + 8, top + 8, right - 8, bottom - 8), enlarged=1.2)

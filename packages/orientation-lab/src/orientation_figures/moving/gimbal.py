@@ -54,7 +54,7 @@ class GimbalFigure(MovingFigure):
     @property
     def room(self):
         """Height of the figure in pixels with its controls beside and below it."""
-        return (436, 784) if self.more else (440, 690)
+        return (655, 772) if self.more else (655, 690)
 
     @property
     def dcm(self):

@@ -71,7 +71,7 @@ class GraphFigure(MovingFigure):
 
     kind = "graph"
     sheet = (-180, -130, 180, 130)
-    room = (465, 650)
+    room = (513, 640)
     edges = Edges(
         (
             ("A", "N", "z", math.radians(35)),

@@ -33,7 +33,7 @@ class HandsFigure(MovingFigure):
 
     kind = "hands"
     sheet = (-190, -120, 190, 120)
-    room = (500, 640)
+    room = (553, 606)
     image = traitlets.Enum(("mirror", "copy"), "mirror").tag(sync=True, state=True)
     quaternion = Direction((1, 0, 0, 0), size=4).tag(sync=True, state=True)
     together = traitlets.Bool(False).tag(sync=True, state=True)

@@ -93,7 +93,7 @@ class MotionFigure(MovingFigure):
 
     kind = "motion"
     sheet = (-180, -150, 180, 150)
-    room = (684, 1319)
+    room = (704, 1319)
     moments = Moments(MOMENTS["racket"], (3,)).tag(sync=True, state=True)
     axis = traitlets.Enum(tuple("xyz"), "y").tag(sync=True, state=True)
     disturbance = Between(0.01, 0, 0.5, "rad/s").tag(sync=True, state=True)

@@ -89,7 +89,7 @@ class QuaternionFigure(MovingFigure):
     def room(self):
         """Height of the figure in pixels with its controls beside and below it."""
         if not self.more:
-            return (565, 660)
+            return (570, 650)
         return (614, 842) if self.view == "double" else (691, 888)
 
     @property

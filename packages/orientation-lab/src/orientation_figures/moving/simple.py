@@ -34,7 +34,7 @@ class SimpleFigure(MovingFigure):
 
     kind = "simple"
     sheet = (-180, -172, 180, 172)
-    room = (520, 910)
+    room = (570, 926)
     axis = traitlets.Enum(("x", "y", "z"), "z").tag(sync=True, state=True)
     angle = Numbers(math.radians(35), largest=math.pi).tag(sync=True, state=True)
 

@@ -66,9 +66,9 @@ export function render({ model, el }) {
   const margin = element('span', { class: 'value' });
   const text = liveText();
   const more = model.get('more') !== false;
-  open(el, stage(sheet, text), element('div', { class: 'readouts' }, ...(more ? [sequence.element] : []),
-    element('div', { class: 'controls' }, ...sliders.map((slider) => slider.element),
-      group('Move the gimbal', 'row-of-controls', ...(more ? buttons : buttons.slice(0, 1)))),
+  open(el, stage(sheet, text), element('div', { class: 'controls' }, ...sliders.map((slider) => slider.element),
+    group('Move the gimbal', 'row-of-controls', ...(more ? buttons : buttons.slice(0, 1)))),
+  element('div', { class: 'readouts' }, ...(more ? [sequence.element] : []),
     readout(['Direction cosine matrix ${}^D\\mathbf{C}^A$'], matrix.element),
     ...(more ? [readout(['Margin to gimbal lock', margin], bar)] : [])));
 

@@ -127,7 +127,7 @@ export class Sheet extends Words {
     this.layers = ['marks', 'labels', 'grips'].map((kind) => element('g', { class: kind }));
     this.pools = [[], new Map(), new Map()];
     this.svg = element('svg', { viewBox: `${left} ${top} ${right - left} ${bottom - top}`, class: 'sheet',
-      style: `max-width:${right - left}px`, tabindex: '0', [OWN_KEYS]: 'true',
+      style: `max-width:${1.2 * (right - left)}px`, tabindex: '0', [OWN_KEYS]: 'true',
       role: 'application', 'aria-roledescription': 'drawing',
       'aria-label': `${name} The arrow keys turn the view, Home turns it back.`,
       // A finger on a grip must not scroll the page; inside an SVG drawing, touch-action has no effect.
