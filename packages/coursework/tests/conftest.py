@@ -30,7 +30,7 @@ def lent_sandboxes(tmp_path_factory):
         from coursework.grading.execution.sandbox import Sandbox
 
         LENT.extend((Sandbox(), tmp_path_factory.mktemp("lent") / "in-use") for _ in range(2))
-    yield
+    yield LENT
     for sandbox, _ in LENT:
         sandbox.close()
 

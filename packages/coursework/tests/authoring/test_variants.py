@@ -462,6 +462,7 @@ def test_a_notebook_remembers_tries_and_help(recorded):
     )
 
 
+@pytest.mark.usefixtures("libraries_are_loaded_once")
 def test_from_the_students_notebook_to_the_report(recorded, course, tmp_path):
     """Three hand in: one right at once, one with help, and one with help and then a sibling."""
     solved = nbformat.read(course.exercises / "levers.ipynb", as_version=4)

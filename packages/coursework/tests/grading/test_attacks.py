@@ -233,7 +233,10 @@ def test_attacks_succeed_without_their_layers(layers, surroundings):
             if attack.without == layers:
                 surroundings.reset()
                 result = sandbox.run(surroundings.job(attack))
+                # Only an explicit request allows it, and every result says so.
                 assert Isolation.from_json(result["isolation"]).weak is True
+                assert result["isolation"]["not stopped"]
+                assert not set(layers) & set(result["isolation"]["layers"])
                 assert taken(result), (attack.name, result["cells"][1], sandbox.report)
                 surroundings.heard()
     surroundings.reset()

@@ -15,6 +15,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 import nbformat
+import psutil
 import pytest
 from grading_class import (
     RIGHT,
@@ -161,20 +162,6 @@ def test_only_this_machine_this_name_and_this_page_are_heard(out):
         assert served.decide(cluster).status == 303 and len(Journal(out).by_people) == 1
 
 
-def test_the_server_listens_on_this_machine_alone(out):
-    with Served(out) as served:
-        import psutil
-
-        mine = [
-            connection
-            for connection in psutil.Process().net_connections("inet")
-            if connection.status == "LISTEN"
-        ]
-        assert {
-            connection.laddr.ip for connection in mine if connection.laddr.port == served.port
-        } == {"127.0.0.1"}
-
-
 def test_what_a_student_wrote_is_shown_and_never_obeyed(out):
     with Served(out) as served:
         response, _ = served.ask(f"/{served.secret}/")
@@ -292,6 +279,9 @@ def test_who_stops_judging_has_the_decisions_in_the_marks(out):
     hear = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=hear) as page:
         assert "Open this address" in page.stdout.readline()
+        # Only this machine can open it.
+        listening = psutil.Process(page.pid).net_connections("inet")
+        assert {connection.laddr.ip for connection in listening} == {"127.0.0.1"}
         Journal(out).add(Store(out).read("rounded-1", "turns"), "turns/sum", 0.5, comment="Nearly.")
         page.send_signal(signal.SIGINT)
         said = page.stdout.read()
@@ -383,7 +373,7 @@ def test_plots_are_seen_beside_the_text_and_only_pictures_are_shown(plotted):
 # ---- in a browser
 
 
-def on_a_telephone(out, plotted, browser, scheme="light"):
+def on_a_telephone(out, plotted, browser, scheme):
     """Open the pages for instructors and for students, one after another."""
     with Served(out) as served, Served(plotted) as of_plots:
         # The page's own policy lets no script in. It is tested elsewhere and bypassed here.
@@ -404,13 +394,8 @@ def on_a_telephone(out, plotted, browser, scheme="light"):
         context.close()
 
 
-def test_pages_fit_a_telephone(out, plotted, browser):
-    for page in on_a_telephone(out, plotted, browser):
-        assert page.evaluate("document.documentElement.scrollWidth") <= 380
-
-
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_pages_are_accessible(out, plotted, browser, scheme):
+def test_pages_fit_a_telephone_and_are_accessible(out, plotted, browser, scheme):
     places = (
         folder / "node_modules" / "axe-core" / "axe.min.js"
         for folder in (PROJECT, *PROJECT.parents)
@@ -422,6 +407,7 @@ def test_pages_are_accessible(out, plotted, browser, scheme):
             "fetches it"
         )
     for page in on_a_telephone(out, plotted, browser, scheme):
+        assert page.evaluate("document.documentElement.scrollWidth") <= 380
         page.evaluate(axe.read_text("utf8"))
         violations = page.evaluate(
             "async () => (await axe.run()).violations.map(v => v.id + ': ' + v.nodes[0].html)"
@@ -485,11 +471,11 @@ def test_many_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
     ]
 
 
+#: Libraries that must know their system before it is another.
+LIBRARIES = "import nbformat, sympy, tornado.httpserver, tornado.ioloop, tornado.web\n"
 #: Code that runs before the command and imitates Windows: what it lacks, and how it locks a file.
-#: Imported libraries know their system already.
 ON_WINDOWS = """
 import os, shutil, subprocess, sys, types
-import nbformat, sympy, tornado.httpserver, tornado.ioloop, tornado.web
 for name in ("fcntl", "resource", "pwd", "grp", "termios"):
     sys.modules[name] = None
 del os.O_DIRECTORY
@@ -509,35 +495,35 @@ def locking(number, mode, count):
         raise OSError(36, "Resource deadlock avoided")
     held.add(place)
 sys.modules["msvcrt"] = types.SimpleNamespace(LK_NBLCK=7, locking=locking)
-from coursework.__main__ import main
 """
 
 
-def on_windows(program, *arguments):
-    command = [sys.executable, "-c", ON_WINDOWS + program, *map(str, arguments)]
+def on_windows(program, *arguments, libraries=""):
+    command = [sys.executable, "-c", libraries + ON_WINDOWS + program, *map(str, arguments)]
     return subprocess.run(command, capture_output=True, text=True)
 
 
 @pytest.mark.long
 def test_on_windows_what_runs_nobody_s_code_runs(out, tmp_path):
     """Commands that do run students' code say where they can run."""
-    command = "main(sys.argv[1:])"
-    done = on_windows(command, "export", out, "--feedback", tmp_path / "feedback.zip")
+    command = "from coursework.__main__ import main\nmain(sys.argv[1:])"
+    runs = functools.partial(on_windows, libraries=LIBRARIES)
+    done = runs(command, "export", out, "--feedback", tmp_path / "feedback.zip")
     assert done.returncode == 0 and (tmp_path / "feedback.zip").is_file(), done.stderr
     (out / "term.toml").write_text(
         'time-zone = "Europe/Paris"\n[assignments.turns]\ndue = 2026-10-05T23:59:00\n'
     )
-    done = on_windows(command, "term", out)
+    done = runs(command, "term", out)
     assert done.returncode == 0 and "course.csv" in done.stdout, done.stderr
     other = shutil.copytree(out, tmp_path / "other")
     program = (
         "from pathlib import Path\nfrom coursework.grading.review import Class\n"
         "Class(Path(sys.argv[1]))"
     )
-    done = on_windows(program, other)
+    done = runs(program, other)
     assert done.returncode == 0, done.stderr
     for arguments in (("grade", out, "--out", tmp_path / "new"), ("regrade", out)):
-        done = on_windows(command, *arguments)
+        done = runs(command, *arguments)
         assert done.returncode == 1 and "WSL" in done.stderr and "Traceback" not in done.stderr, (
             done.stderr
         )
