@@ -85,6 +85,7 @@ def changed(old, new, text=QUESTION):
             {"question": changed("symbols", "symbol")},
             "`question` has no argument `symbol`. Did you mean `symbols`?",
         ),
+        ({"question": changed("'x')", "'x', points=3)")}, "Did you mean `worth`?"),
         (
             {"question": changed("'x')", "'x', hints=['Think.'])")},
             "`hints` must be a dictionary whose keys are strings",

@@ -489,7 +489,7 @@ LONG = "levers/" + "a" * 90
         ("Levers/Arm", r"Did you mean 'levers/arm'\?"),
         ("lever/arm", r"^There is no question 'lever/arm'. Did you mean 'levers/arm'\?"),
         ("third/zzzzzzzz", r"Did you mean 'third/a'\?"),
-        ("zzzzzzzz", r"^There is no question 'zzzzzzzz'\.$"),
+        ("zzzzzzzz", r"^There is no question 'zzzzzzzz'\. A name begins with that of its notebook"),
         ("../levers/arm", "There is no question"),
         (LONG, f"^There is no question '{LONG[:80]}'"),
     ],

@@ -151,6 +151,8 @@ def test_who_works_here_is_said_once(folder, capsys):
     for nobody in ("", "your ID"):
         identity.student(nobody)
         assert capsys.readouterr().out == identity.FORGOTTEN + "\n"
+    with pytest.raises(TypeError, match="takes one ID, .*: 'ann' or 'ben'"):
+        identity.student("ann", "ben")
     identity.student("  Ann   Ä.\t")
     assert identity.identity() == "ann ä." == identity.KEPT.read_text("utf8")
     assert capsys.readouterr().out == "You are ann ä. The numbers below are yours.\n"

@@ -220,6 +220,7 @@ def test_what_is_dropped_is_best_for_the_student(rules):
             "assignments.turns.times must be a string, not 3",
         ),
         ('"Europe/Amsterdam"', "Europe", "line 3"),
+        ("[assignments.turns]", "[assignments.Week 1]", "name with a space in quotation marks"),
         ('"Europe/Amsterdam"', r'"C:\Users"', "Write / in paths, not a backslash"),
         # Windows' editor may put a byte order mark first.
         ('\nname = "Autumn 2026"', "\ufeffnaem = 'Autumn'", "line 1: unknown key 'naem'"),

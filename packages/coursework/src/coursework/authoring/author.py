@@ -637,7 +637,7 @@ def _demand_arguments(name: str, given: set[str]) -> None:
         if parameter.kind is parameter.KEYWORD_ONLY
     ]
     for argument in sorted(given - set(known)):
-        close = difflib.get_close_matches(argument, known, 1)
+        close = ["worth"] * (argument == "points") + difflib.get_close_matches(argument, known, 1)
         raise AuthorError(
             f"{name}: `question` has no argument `{argument}`."
             + (f" Did you mean `{close[0]}`?" if close else "")

@@ -22,7 +22,7 @@ PLACEHOLDER = "your ID"
 _identity: str | None = None
 
 
-def student(identity: str = "") -> None:
+def student(identity: str = "", *others: str) -> None:
     """Say who you are, so that you get your own numbers: ``student('ada@uni.example')``.
 
     Once is enough: your ID is stored beside your notebooks (in JupyterLite, in the browser), and
@@ -33,8 +33,18 @@ def student(identity: str = "") -> None:
     ----------
     identity : str
         As in your instructor's roster; capitals and surrounding spaces make no difference.
+
+    Raises
+    ------
+    TypeError
+        If more than one ID is given.
     """
     global _identity
+    if others:
+        raise TypeError(
+            f"`student` takes one ID, as in your instructor's roster: {identity!r} or "
+            f"{' or '.join(map(repr, others))}."
+        )
     _identity, before = plain_identity("" if identity == PLACEHOLDER else identity), _kept()
     if not _identity and before:
         _identity = before

@@ -213,9 +213,10 @@ def find_question(name: str, student: str) -> Sealed:
 
     nearest = difflib.get_close_matches(notebook.lower(), notebooks, 1, cutoff=0)
     near = difflib.get_close_matches(name.lower(), notebook_questions(nearest[0]), cutoff=0.5)
-    raise NoSuchQuestion(
-        f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else "")
-    )
+    hint = f" Did you mean '{near[0]}'?" if near else ""
+    if "/" not in name and not near:
+        hint = " A name begins with that of its notebook, as in 'notebook/question'."
+    raise NoSuchQuestion(f"There is no question '{name[:80]}'.{hint}")
 
 
 def variant(name: str) -> Given:

@@ -499,6 +499,8 @@ def read_term(path: str | Path) -> Term:
             advice = "Write / in paths, not a backslash."
         elif re.search("overwrite|declare", str(error)):
             advice = "Write each table and each entry only once."
+        elif "end of a table declaration" in str(error):
+            advice = "Put a name with a space in quotation marks: [assignments.'Week 1']."
         raise BadTerm(f"{path}: {reason_of(error)}. {advice}") from None
     file = _File(path)
     if zone := said.get("time-zone"):
