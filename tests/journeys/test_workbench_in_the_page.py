@@ -100,3 +100,20 @@ def test_a_dropped_file_goes_into_the_field_or_to_the_bench(page, tmp_path):
             devices.send("Input.dispatchDragEvent", {"type": kind, **point, "data": data})
         shown.wait_for()
     assert len(page.context.pages) == 1
+
+
+@pytest.mark.parametrize("page", ["desk"], indirect=True)
+def test_an_address_that_was_cut_off_says_so_and_shows_no_other_numbers(page):
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    click(page, page.get_by_role("button", name="Copy the address of this case"))
+    page.get_by_text("The address is copied.").wait_for()
+    address = page.evaluate("navigator.clipboard.readText()")
+    page.goto("about:blank")
+    page.goto(address[:-40])
+    answer(page).get_by_text("This address is incomplete").wait_for()
+    first, second = (page.get_by_label(f"What the {side} program") for side in ("first", "second"))
+    assert [first.input_value(), second.input_value()] == ["", ""]
+    # It is forgotten with the first numbers.
+    first.click()
+    page.keyboard.insert_text(FLU)
+    answer(page).get_by_text("The second side is empty").wait_for()

@@ -145,6 +145,8 @@ def test_page_of_a_wrong_address_leads_home_from_any_folder(page, tmp_path, colo
     (tmp_path / "404.html").symlink_to(HTML / "404.html")
     with serving(serve.Handler, tmp_path) as root:
         page.emulate_media(color_scheme=colours)
+        page.goto(f"{root}courses/book/chapters/")  # a folder, which has no page of its own
+        expect(page.get_by_role("link", name="front page")).to_be_visible()
         page.goto(f"{root}courses/book/chapters/no/such-page.html")
         home = f"{root}courses/book/index.html"
         expect(page.get_by_role("link", name="front page")).to_have_attribute("href", home)

@@ -45,6 +45,10 @@ class Handler(SimpleHTTPRequestHandler):
             self.error_message_format = page.read_text("utf8").replace("%", "%%")
         super().send_error(code, *arguments, **more)
 
+    def list_directory(self, path):
+        """Send the same page for a folder without a page of its own, as other hosts do."""
+        self.send_error(404)
+
     def log_message(self, *arguments):
         """Log nothing."""
 

@@ -127,6 +127,7 @@ export function render({ model, el }) {
   async function judge() {
     const search = (searches += 1);
     for (const side of sides) side.show();
+    if (model.get('first') || model.get('second')) unreadable = '';
     noise.show?.(model.get('noise'));
     put(verdict, 'aria-busy', 'true');
     let explained = null, wrong = '';
@@ -135,7 +136,7 @@ export function render({ model, el }) {
         secondDeclared: knownOf(model.get('second_is')), firstProgram: model.get('first_is').program,
         secondProgram: model.get('second_is').program, noise: model.get('noise') * Math.PI / 180 }), () => search === searches);
     } catch (error) {
-      wrong = error.message;
+      wrong = unreadable || error.message;
     }
     if (search !== searches) return;
     [found, fault] = [explained, wrong];
@@ -173,10 +174,14 @@ export function render({ model, el }) {
       if (carried?.place === PLACE) change(model, takenUp(carried.content, programs));
     } catch (error) {
       words.say(error.message);
+      return error.message.replace(/\.$/, '');
     }
+    return '';
   }
 
-  takeUp();
+  // A page that was opened with an unreadable address says so, and shows no other numbers.
+  let unreadable = takeUp();
+  if (unreadable) change(model, { first: '', second: '' });
   judge();
   draw();
   globalThis.addEventListener?.('hashchange', takeUp);
