@@ -19,7 +19,6 @@ from figure_pages import (  # noqa: F401
 )
 from orientations import rotation_error
 from scipy.spatial.transform import Rotation
-from traitlets import TraitError
 
 from orientation import dcm_from_body_fixed
 from orientation_figures.moving import BeltFigure, ChallengeFigure, GraphFigure, HandsFigure
@@ -54,13 +53,6 @@ def test_the_turn_that_remains_is_that_of_scipy(seed):
     back = [(axis, -angle) for axis, angle in reversed(rotations)]
     assert ChallengeFigure(task="undo", given=rotations, turns=back).remaining < 1e-12
     assert ChallengeFigure(task="undo", given=rotations, turns=back[::-1]).remaining > 0.1
-
-
-def test_no_challenge_without_turns_and_no_more_turns_than_fit():
-    with pytest.raises(TraitError, match="given is .*: expected 1 to 3 pairs"):
-        ChallengeFigure(given=())
-    with pytest.raises(TraitError, match="turns is .*: expected at most 20 pairs"):
-        ChallengeFigure(turns=[("x", 0.1)] * 21)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -98,9 +90,6 @@ def test_two_full_turns_come_out_of_the_belt_and_one_does_not():
         BeltFigure(angle=2 * FULL, passed=part).quaternion_at(0.5) for part in np.linspace(0, 1, 60)
     ]
     assert np.abs(np.diff(middles, axis=0)).max() < 0.1
-    for bad in (-0.1, 4 * math.pi + 0.1):
-        with pytest.raises(TraitError, match="numbers from 0 to 12.5664"):
-            BeltFigure(angle=bad)
 
 
 def test_the_belt_does_not_stretch():
@@ -118,22 +107,6 @@ TREE = [
     ("D", "B", "z", 2.0),
     ("E", "D", "x", -0.9),
 ]
-
-
-@pytest.mark.parametrize(
-    "edges",
-    [[("B", "A", "x", 0.1)], [("A", "N", "x", 0.1), ("A", "N", "y", 0.1)], [("Q", "N", "x", 1)]],
-)
-def test_a_tree_has_each_frame_once_and_its_reference_before(edges):
-    with pytest.raises(
-        TraitError, match="edges (orients B in A, but there is no frame A|defines the frame)"
-    ):
-        GraphFigure(edges=edges, target="N", source="N")
-
-
-def test_the_ends_of_a_path_are_frames_of_the_tree():
-    with pytest.raises(TraitError, match="target is C, but the frames are N, A"):
-        GraphFigure(edges=TREE[:1], target="C", source="N")
 
 
 # In the browser.
