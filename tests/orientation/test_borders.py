@@ -50,14 +50,25 @@ def test_there_and_back(shape):
     np.testing.assert_allclose(rotation.as_matrix(), dcms.swapaxes(-1, -2), atol=1e-14)
 
 
-def test_what_does_not_cross():
-    with pytest.raises(SymbolsNotPossible, match="dcm holds cos"):
-        scipy_rotation_from_dcm(simple_dcm("z", sm.Symbol("theta")))
-    with pytest.raises(ValueError, match="left-handed"):
-        scipy_rotation_from_dcm(-np.eye(3))
-    for wrong, kind in ((np.eye(3), "ndarray"), ("zxy", "str"), (None, "NoneType")):
-        with pytest.raises(TypeError, match=f"rotation must be a SciPy Rotation, not {kind}"):
-            dcm_from_scipy_rotation(wrong)
+@pytest.mark.parametrize(
+    "function, argument, error, words",
+    [
+        (
+            scipy_rotation_from_dcm,
+            simple_dcm("z", sm.Symbol("theta")),
+            SymbolsNotPossible,
+            "dcm holds cos",
+        ),
+        (scipy_rotation_from_dcm, -np.eye(3), ValueError, "left-handed"),
+        *(
+            (dcm_from_scipy_rotation, wrong, TypeError, f"must be a SciPy Rotation, not {kind}")
+            for wrong, kind in ((np.eye(3), "ndarray"), ("zxy", "str"), (None, "NoneType"))
+        ),
+    ],
+)
+def test_what_does_not_cross(function, argument, error, words):
+    with pytest.raises(error, match=words):
+        function(argument)
 
 
 def test_exact_numbers_cross():

@@ -542,50 +542,55 @@ def test_a_quaternion_is_not_read_as_entries_of_a_matrix():
 # --- what cannot be compared ----------------------------------------------------------------------
 
 
-def test_bad_input():
-    dcm, quaternion = composed(NUMBERS, "zxy"), (1, 0, 0, 0)
-    for function in (same_orientation, diagnose):
-        with pytest.raises(
-            ValueError, match="is a direction cosine matrix and .* is a quaternion; convert one"
-        ):
-            function(dcm, quaternion)
-        with pytest.raises(ValueError, match="must be a direction cosine matrix, of shape"):
-            function(dcm, (1, 2, 3))
-        with pytest.raises(ValueError, match="must be a direction cosine matrix"):
-            function(theta, dcm)
-        name = "given" if function is diagnose else "first"
-        for spoilt, message in (
-            (dcm * np.nan, r"\[0, 0\] is nan"),
-            (random_dcms(2, 1) * np.nan, r"\[0, 0, 0\] is nan"),
-            (composed(SYMBOLS, "zxy") * sm.nan, " holds nan"),
-        ):
-            with pytest.raises(ValueError, match=f"^{name}{message}"):
-                function(spoilt, dcm)
-        with pytest.raises(TypeError, match="must hold real numbers"):
-            function(dcm, "zxy")
-    for pair in ((random_dcms(3, 7), random_dcms(3, 7)), (random_dcms(3, 7), dcm)):
-        for answer, expected in (pair, pair[::-1]):
-            with pytest.raises(ValueError, match="one answer at a time"):
-                diagnose(answer, expected)
-    for angles, error, message in (
-        ((1, 2), ValueError, r" has shape \(2,\)"),
-        (np.zeros((2, 3)), ValueError, r" has shape \(2, 3\)"),
-        ((1, np.nan, 2), ValueError, r"\[1\] is nan"),
-        ((psi, sm.nan, 1), ValueError, " holds nan"),
-        ("zxy", TypeError, " must hold real numbers"),
-    ):
-        with pytest.raises(error, match=f"^angles{message}"):
-            diagnose(dcm.T, dcm, angles, "zxy")
-    with pytest.raises(ValueError, match="give both angles and sequence"):
-        diagnose(dcm.T, dcm, NUMBERS)
-    with pytest.raises(ValueError, match="give both angles and sequence"):
-        diagnose(dcm.T, dcm, sequence="zxy")
-    with pytest.raises(ValueError, match="'zzx' is not a sequence"):
-        diagnose(dcm.T, dcm, NUMBERS, "zzx")
-    with pytest.raises(
-        ValueError, match="`expected` is not the body fixed yxz orientation of these angles"
-    ):
-        diagnose(dcm.T, dcm, NUMBERS, "yxz")
+DCM, STACK = composed(NUMBERS, "zxy"), random_dcms(3, 7)
+
+
+@pytest.mark.parametrize("function, name", [(same_orientation, "first"), (diagnose, "given")])
+@pytest.mark.parametrize(
+    "pair, error, words",
+    [
+        (
+            (DCM, (1, 0, 0, 0)),
+            ValueError,
+            "is a direction cosine matrix and .* is a quaternion; convert one",
+        ),
+        ((DCM, (1, 2, 3)), ValueError, "must be a direction cosine matrix, of shape"),
+        ((theta, DCM), ValueError, "must be a direction cosine matrix"),
+        ((DCM * np.nan, DCM), ValueError, r"^NAME\[0, 0\] is nan"),
+        ((random_dcms(2, 1) * np.nan, DCM), ValueError, r"^NAME\[0, 0, 0\] is nan"),
+        ((composed(SYMBOLS, "zxy") * sm.nan, DCM), ValueError, "^NAME holds nan"),
+        ((DCM, "zxy"), TypeError, "must hold real numbers"),
+    ],
+)
+def test_what_cannot_be_compared_is_told(function, name, pair, error, words):
+    with pytest.raises(error, match=words.replace("NAME", name)):
+        function(*pair)
+
+
+@pytest.mark.parametrize(
+    "arguments, error, words",
+    [
+        ((STACK, STACK), ValueError, "one answer at a time"),
+        ((STACK, DCM), ValueError, "one answer at a time"),
+        ((DCM, STACK), ValueError, "one answer at a time"),
+        ((DCM.T, DCM, (1, 2), "zxy"), ValueError, r"^angles has shape \(2,\)"),
+        ((DCM.T, DCM, np.zeros((2, 3)), "zxy"), ValueError, r"^angles has shape \(2, 3\)"),
+        ((DCM.T, DCM, (1, np.nan, 2), "zxy"), ValueError, r"^angles\[1\] is nan"),
+        ((DCM.T, DCM, (psi, sm.nan, 1), "zxy"), ValueError, "^angles holds nan"),
+        ((DCM.T, DCM, "zxy", "zxy"), TypeError, "^angles must hold real numbers"),
+        ((DCM.T, DCM, NUMBERS), ValueError, "give both angles and sequence"),
+        ((DCM.T, DCM, None, "zxy"), ValueError, "give both angles and sequence"),
+        ((DCM.T, DCM, NUMBERS, "zzx"), ValueError, "'zzx' is not a sequence"),
+        (
+            (DCM.T, DCM, NUMBERS, "yxz"),
+            ValueError,
+            "`expected` is not the body fixed yxz orientation of these angles",
+        ),
+    ],
+)
+def test_what_cannot_be_diagnosed_is_told(arguments, error, words):
+    with pytest.raises(error, match=words):
+        diagnose(*arguments)
 
 
 def test_a_tolerance_holds_for_everything_that_is_asked():

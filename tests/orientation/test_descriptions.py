@@ -181,25 +181,19 @@ def test_a_mean_does_not_depend_on_the_order_nor_on_one_far_away():
 
 
 @pytest.mark.parametrize(
-    "weights, words",
+    "arguments, words",
     [
-        ([1, 2], "one for each"),
-        ([1, -1, 1], "must not be negative"),
-        ([0, 0, 0], "must not be negative or all zero"),
+        ({"dcms": DCMS[:3], "weights": [1, 2]}, "one for each"),
+        ({"dcms": DCMS[:3], "weights": [1, -1, 1]}, "must not be negative"),
+        ({"dcms": DCMS[:3], "weights": [0, 0, 0]}, "must not be negative or all zero"),
+        ({"dcms": DCMS, "metric": "chordal"}, "metric must be .* not 'chordal'"),
+        ({"dcms": np.eye(3)}, r"\(n, 3, 3\)"),
+        ({"dcms": np.stack([np.eye(3), 2 * np.eye(3)])}, "item"),
     ],
 )
-def test_bad_weights_are_refused(weights, words):
+def test_means_refuse_what_they_cannot_read(arguments, words):
     with pytest.raises(ValueError, match=words):
-        mean_orientation(DCMS[:3], weights)
-
-
-def test_means_refuse_what_they_cannot_read():
-    with pytest.raises(ValueError, match="metric must be .* not 'chordal'"):
-        mean_orientation(DCMS, metric="chordal")
-    with pytest.raises(ValueError, match=r"\(n, 3, 3\)"):
-        mean_orientation(np.eye(3))
-    with pytest.raises(ValueError, match="item"):
-        mean_orientation(np.stack([np.eye(3), 2 * np.eye(3)]))
+        mean_orientation(**arguments)
 
 
 # ---- chance --------------------------------------------------------------------------------------

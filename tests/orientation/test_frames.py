@@ -194,21 +194,21 @@ def test_batches(kind):
     )
 
 
-def test_batches_that_do_not_fit_are_refused():
-    for axis in "zx":
-        frames = (
-            Frames()
-            .orient_axis("B", "A", "z", np.zeros(2))
-            .orient_axis("C", "B", axis, np.zeros(3))
-        )
-        with pytest.raises(
-            ValueError,
-            match=r"batches along this path have incompatible shapes: \(2,\) and \(3,\)",
-        ):
-            frames.dcm("C", "A")
-        frames = Frames().orient_axis("B", "A", "z", np.zeros(2)).orient_axis("C", "B", axis, psi)
-        with pytest.raises(ValueError, match="this path has both symbols and a batch"):
-            frames.dcm("C", "A")
+@pytest.mark.parametrize("axis", "zx")
+@pytest.mark.parametrize(
+    "second, words",
+    [
+        (
+            np.zeros(3),
+            r"batches along this path have incompatible shapes: \(2,\) and \(3,\)",
+        ),
+        (psi, "this path has both symbols and a batch"),
+    ],
+)
+def test_batches_that_do_not_fit_are_refused(axis, second, words):
+    frames = Frames().orient_axis("B", "A", "z", np.zeros(2)).orient_axis("C", "B", axis, second)
+    with pytest.raises(ValueError, match=words):
+        frames.dcm("C", "A")
 
 
 @pytest.mark.parametrize(

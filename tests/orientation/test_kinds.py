@@ -543,23 +543,29 @@ def test_what_is_no_expression_is_told(function, batches):
         lambda sequence: angular_velocity_matrix((1, 2, 3), sequence),
     ],
 )
-def test_sequences_that_are_none(call):
-    for sequence in ("zzx", "xyy", "xxx"):
-        with pytest.raises(
-            ValueError,
-            match=f"'{sequence}' is not a sequence .*: two successive rotations about one axis",
-        ):
-            call(sequence)
-    for sequence in ("ZXY", "Zxz"):
-        with pytest.raises(
-            ValueError, match=f"'{sequence}' is not .*: write '{sequence.lower()}': .*body fixed"
-        ):
-            call(sequence)
-    for sequence in ("zx", "", "zxyz", "abc", "313", 313, None, ("z", "x", "y"), ["z", "x", "y"]):
-        with pytest.raises(
-            ValueError, match="is not a sequence of Euler angles: the twelve sequences are zxz, "
-        ):
-            call(sequence)
+@pytest.mark.parametrize(
+    "sequence, words",
+    [
+        *(
+            (
+                sequence,
+                f"'{sequence}' is not a sequence .*: two successive rotations about one axis",
+            )
+            for sequence in ("zzx", "xyy", "xxx")
+        ),
+        *(
+            (sequence, f"'{sequence}' is not .*: write '{sequence.lower()}': .*body fixed")
+            for sequence in ("ZXY", "Zxz")
+        ),
+        *(
+            (sequence, "is not a sequence of Euler angles: the twelve sequences are zxz, ")
+            for sequence in ("zx", "", "zxyz", "abc", "313", 313, None, tuple("zxy"), list("zxy"))
+        ),
+    ],
+)
+def test_sequences_that_are_none(call, sequence, words):
+    with pytest.raises(ValueError, match=words):
+        call(sequence)
 
 
 @pytest.mark.parametrize(
@@ -647,38 +653,54 @@ def test_which_of_two_is_no_orientation_is_told(function, good, message):
             function(*(matrix[1] for matrix in pair))
 
 
-def test_symbolic_matrices_that_are_no_orientation():
-    with pytest.raises(ValueError, match="dcm at random values of its symbols is not orthogonal"):
-        check_dcm(composed(SYMBOLS, "zxy") + sm.eye(3))
-    with pytest.raises(
-        ValueError, match="dcm at random values of its symbols is orthogonal but left-handed"
-    ):
-        check_dcm(-composed(SYMBOLS, "zxy"))
-    with pytest.raises(ValueError, match="is not real: an entry has an imaginary part of 1"):
-        check_dcm(composed(SYMBOLS, "zxy") + sm.I * sm.ones(3))
-    with pytest.raises(ValueError, match="is not real: an entry has an imaginary part of 1"):
-        check_dcm(sm.eye(3) - sm.I * sm.ones(3))
-    for value, fault in (
-        (2 * sm.eye(3), "is not orthogonal: row x has length 2"),
-        (SYMBOLS, "has shape"),
-        (np.eye(4), "has shape .*take the rotation out of each pose"),
-        (np.ones((3, 3, 7)), "has shape .*put the batch first"),
-    ):
-        with pytest.raises(ValueError, match=f"^dcm {fault}"):
-            check_dcm(value)
+SYMBOLIC = composed(SYMBOLS, "zxy")
 
 
-def test_components_in_separate_arrays_are_not_guessed_at():
-    with pytest.raises(
-        ValueError, match="a sequence of 3 arrays, which can be read in two ways.*axis=-1"
-    ):
-        dcm_from_body_fixed(tuple(ANGLES.T), "zxy")
-    with pytest.raises(ValueError, match="a sequence of 4 arrays"):
-        dcm_from_quaternion(list(QUATERNIONS.T))
-    with pytest.raises(TypeError, match="Join numbers and arrays with numpy.stack"):
-        dcm_from_body_fixed((ANGLES[:, 0], 0.0, 0.0), "zyx")
-    with pytest.raises(TypeError, match="use dcm_from_scipy_rotation"):
-        check_dcm(orientation.scipy_rotation_from_dcm(np.eye(3)))
+@pytest.mark.parametrize(
+    "value, fault",
+    [
+        (SYMBOLIC + sm.eye(3), "dcm at random values of its symbols is not orthogonal"),
+        (-SYMBOLIC, "dcm at random values of its symbols is orthogonal but left-handed"),
+        (SYMBOLIC + sm.I * sm.ones(3), "is not real: an entry has an imaginary part of 1"),
+        (sm.eye(3) - sm.I * sm.ones(3), "is not real: an entry has an imaginary part of 1"),
+        (2 * sm.eye(3), "^dcm is not orthogonal: row x has length 2"),
+        (SYMBOLS, "^dcm has shape"),
+        (np.eye(4), "^dcm has shape .*take the rotation out of each pose"),
+        (np.ones((3, 3, 7)), "^dcm has shape .*put the batch first"),
+    ],
+)
+def test_matrices_of_symbols_or_of_other_shapes_that_are_no_orientation(value, fault):
+    with pytest.raises(ValueError, match=fault):
+        check_dcm(value)
+
+
+@pytest.mark.parametrize(
+    "function, arguments, error, words",
+    [
+        (
+            dcm_from_body_fixed,
+            (tuple(ANGLES.T), "zxy"),
+            ValueError,
+            "a sequence of 3 arrays, which can be read in two ways.*axis=-1",
+        ),
+        (dcm_from_quaternion, (list(QUATERNIONS.T),), ValueError, "a sequence of 4 arrays"),
+        (
+            dcm_from_body_fixed,
+            ((ANGLES[:, 0], 0.0, 0.0), "zyx"),
+            TypeError,
+            "Join numbers and arrays with numpy.stack",
+        ),
+        (
+            check_dcm,
+            (orientation.scipy_rotation_from_dcm(np.eye(3)),),
+            TypeError,
+            "use dcm_from_scipy_rotation",
+        ),
+    ],
+)
+def test_components_in_separate_arrays_are_not_guessed_at(function, arguments, error, words):
+    with pytest.raises(error, match=words):
+        function(*arguments)
     assert dcm_from_body_fixed(list(ANGLES), "zxy").shape == (COUNT, 3, 3)
 
 

@@ -112,15 +112,6 @@ def test_slerp_between_nearly_and_exactly_equal_orientations():
     assert abs(interpolate_quaternions(q, near, 0.5) - (q + near) / 2).max() < 1e-15
 
 
-def test_slerp_refuses_what_has_no_answer():
-    with pytest.raises(ValueError, match="half a turn apart"):
-        interpolate_quaternions((1, 0, 0, 0), (0, 0, 1, 0), 0.5)
-    with pytest.raises(ValueError, match="second has length 2"):
-        interpolate_quaternions((1, 0, 0, 0), (2, 0, 0, 0), 0.5)
-    with pytest.raises(SymbolsNotPossible):
-        interpolate_quaternions(sm.symbols("a:4"), (1, 0, 0, 0), 0.5)
-
-
 def test_angular_velocity_undoes_the_rate_of_the_matrix(random):
     dcms = dcm_from_quaternion(random_unit_vectors(50, 1, size=4))
     omegas = random.normal(size=(50, 3))
@@ -218,28 +209,98 @@ def test_a_constant_angular_velocity_is_integrated_exactly_by_one_step():
         assert np.allclose(turns, [1.7 * omega], atol=1e-15)
 
 
-def test_steps_refuse_what_they_cannot_read():
-    with pytest.raises(ValueError, match="order must be 1, 2 or 4, not 3"):
-        turns_from_angular_velocity(tumbling, [0, 1], 3)
-    for rates, words in (
-        (lambda t: np.ones((len(t), 1)), r"shape \(2,\)|shape \(3, 1\)"),
-        (lambda t: np.ones((5, 3)), "for 3 times"),
-        (np.ones((4, 3)), "must be a function of the times. For the samples of a gyroscope"),
-    ):
-        with pytest.raises((ValueError, TypeError), match=words):
-            turns_from_angular_velocity(rates, [0, 1, 2, 3])
-    for times in ([0], [[0, 1]]):
-        with pytest.raises(ValueError, match="^times must have shape .* boundaries of one or more"):
-            turns_from_angular_velocity(tumbling, times)
-    for wrong, message in ((np.nan, r"\[0, 0\] is nan"), ("fast", " must hold real numbers")):
-        with pytest.raises((ValueError, TypeError), match=rf"^angular_velocity\(times\){message}"):
-            turns_from_angular_velocity(lambda t: [3 * [wrong]], [0, 1])
-    with pytest.raises(ValueError, match="^start is not orthogonal"):
-        dcms_after_turns(2 * np.eye(3), np.zeros((1, 3)))
-    with pytest.raises(ValueError, match=r"^start must have shape \(3, 3\), not \(1, 3, 3\)"):
-        dcms_after_turns(np.eye(3)[None], np.zeros((1, 3)))
-    with pytest.raises(ValueError, match=r"^turns must have shape \(n, 3\), not \(3,\)"):
-        dcms_after_turns(np.eye(3), (0, 0, 1))
+@pytest.mark.parametrize(
+    "function, arguments, error, words",
+    [
+        (
+            interpolate_quaternions,
+            ((1, 0, 0, 0), (0, 0, 1, 0), 0.5),
+            ValueError,
+            "half a turn apart",
+        ),
+        (
+            interpolate_quaternions,
+            ((1, 0, 0, 0), (2, 0, 0, 0), 0.5),
+            ValueError,
+            "second has length 2",
+        ),
+        (
+            interpolate_quaternions,
+            (sm.symbols("a:4"), (1, 0, 0, 0), 0.5),
+            SymbolsNotPossible,
+            "first holds a0",
+        ),
+        (
+            turns_from_angular_velocity,
+            (tumbling, [0, 1], 3),
+            ValueError,
+            "order must be 1, 2 or 4, not 3",
+        ),
+        (
+            turns_from_angular_velocity,
+            (lambda t: np.ones((len(t), 1)), [0, 1, 2, 3]),
+            (ValueError, TypeError),
+            r"shape \(2,\)|shape \(3, 1\)",
+        ),
+        (
+            turns_from_angular_velocity,
+            (lambda t: np.ones((5, 3)), [0, 1, 2, 3]),
+            (ValueError, TypeError),
+            "for 3 times",
+        ),
+        (
+            turns_from_angular_velocity,
+            (np.ones((4, 3)), [0, 1, 2, 3]),
+            (ValueError, TypeError),
+            "must be a function of the times. For the samples of a gyroscope",
+        ),
+        (
+            turns_from_angular_velocity,
+            (tumbling, [0]),
+            ValueError,
+            "^times must have shape .* boundaries of one or more",
+        ),
+        (
+            turns_from_angular_velocity,
+            (tumbling, [[0, 1]]),
+            ValueError,
+            "^times must have shape .* boundaries of one or more",
+        ),
+        (
+            turns_from_angular_velocity,
+            (lambda t: [3 * [np.nan]], [0, 1]),
+            (ValueError, TypeError),
+            r"^angular_velocity\(times\)\[0, 0\] is nan",
+        ),
+        (
+            turns_from_angular_velocity,
+            (lambda t: [3 * ["fast"]], [0, 1]),
+            (ValueError, TypeError),
+            r"^angular_velocity\(times\) must hold real numbers",
+        ),
+        (
+            dcms_after_turns,
+            (2 * np.eye(3), np.zeros((1, 3))),
+            ValueError,
+            "^start is not orthogonal",
+        ),
+        (
+            dcms_after_turns,
+            (np.eye(3)[None], np.zeros((1, 3))),
+            ValueError,
+            r"^start must have shape \(3, 3\), not \(1, 3, 3\)",
+        ),
+        (
+            dcms_after_turns,
+            (np.eye(3), (0, 0, 1)),
+            ValueError,
+            r"^turns must have shape \(n, 3\), not \(3,\)",
+        ),
+    ],
+)
+def test_what_has_no_answer_or_cannot_be_read_is_refused(function, arguments, error, words):
+    with pytest.raises(error, match=words):
+        function(*arguments)
 
 
 # ---- digits of near orientations and small turns -------------------------------------------------

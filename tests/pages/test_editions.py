@@ -91,20 +91,37 @@ def paragraph(*parts):
     return [part.astext() for part in page.children]
 
 
-def test_only_the_sentence_that_leads_to_a_solution_goes():
-    solution, exercise = refers("solution-door"), refers("/exercises/door", "doc")
-    assert paragraph(
-        "Worked solutions: ", solution, " and ", refers("solution-x"), ". More: ", exercise, "."
-    ) == ["More: there."]
-    assert paragraph("Try first! The solutions are ", refers("solutions"), ". They wait.") == [
-        "Try first! They wait."
-    ]
-    assert paragraph("See ", refers("solution-door"), ".") == []
-    assert paragraph("See ", refers("chapter-door"), ". It solves.") == ["See there. It solves."]
-    assert paragraph(
-        "In ", refers("/appendix/solutions-going-further", "doc"), " it is. Good."
-    ) == ["Good."]
-    assert paragraph("In ", refers("solutions-going-further"), ".") == []
+SOLUTIONS = "/appendix/solutions-going-further"
+
+
+@pytest.mark.parametrize(
+    ("parts", "left"),
+    [
+        (
+            (
+                "Worked solutions: ",
+                ("solution-door",),
+                " and ",
+                ("solution-x",),
+                ". More: ",
+                ("/exercises/door", "doc"),
+                ".",
+            ),
+            ["More: there."],
+        ),
+        (
+            ("Try first! The solutions are ", ("solutions",), ". They wait."),
+            ["Try first! They wait."],
+        ),
+        (("See ", ("solution-door",), "."), []),
+        (("See ", ("chapter-door",), ". It solves."), ["See there. It solves."]),
+        (("In ", (SOLUTIONS, "doc"), " it is. Good."), ["Good."]),
+        (("In ", ("solutions-going-further",), "."), []),
+    ],
+)
+def test_only_the_sentence_that_leads_to_a_solution_goes(parts, left):
+    """A part is a text, or the target of a reference."""
+    assert paragraph(*(part if isinstance(part, str) else refers(*part) for part in parts)) == left
 
 
 def test_the_pages_of_solutions_are_left_out(monkeypatch):

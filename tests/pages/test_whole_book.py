@@ -306,26 +306,34 @@ def test_too_wide_a_line_stops_the_printing(browser):
     page.context.close()
 
 
+THIRD = math.pi / 3
+
+
+@pytest.mark.parametrize(
+    ("state", "words"),
+    [
+        (
+            {"angles": [THIRD, 0, -THIRD / 2], "sequence": "zxy"},
+            r"\psi = 60^\circ,\ \theta = 0^\circ,\ \varphi = -30^\circ",
+        ),
+        ({"angle": 1, "axis": "z"}, r"57.3^\circ\text{ about }z"),
+        ({"angle": THIRD, "axis": [0.6, -0.0, -0.8]}, r"60^\circ\text{ about }(0.6,\ 0,\ -0.8)"),
+        (
+            {"turns": [["z", THIRD], ["x", -THIRD]]},
+            r"60^\circ\text{ about }z\text{, then }-60^\circ\text{ about }x",
+        ),
+        ({"matrix": [[1, 0], [0.5, -1]]}, r"\begin{bmatrix}1 & 0\\0.5 & -1\end{bmatrix}"),
+        # The answer to a puzzle is not given away, and a run has no number of its own.
+        ({"given": [["z", 1.0]], "turns": []}, ""),
+        ({"time": 6.0}, ""),
+    ],
+)
+def test_a_still_has_the_numbers_beside_the_interactive_figure(state, words):
+    assert pdf.as_drawn(state) == words
+
+
 def test_a_still_tells_its_numbers():
-    """They are the numbers beside the interactive figure, if readers would read them off."""
-    third = math.pi / 3
-    assert pdf.as_drawn({"angles": [third, 0, -third / 2], "sequence": "zxy"}) == (
-        r"\psi = 60^\circ,\ \theta = 0^\circ,\ \varphi = -30^\circ"
-    )
-    assert pdf.as_drawn({"angle": 1, "axis": "z"}) == r"57.3^\circ\text{ about }z"
-    assert (
-        pdf.as_drawn({"angle": third, "axis": [0.6, -0.0, -0.8]})
-        == r"60^\circ\text{ about }(0.6,\ 0,\ -0.8)"
-    )
-    assert pdf.as_drawn({"turns": [["z", third], ["x", -third]]}) == (
-        r"60^\circ\text{ about }z\text{, then }-60^\circ\text{ about }x"
-    )
-    assert (
-        pdf.as_drawn({"matrix": [[1, 0], [0.5, -1]]})
-        == r"\begin{bmatrix}1 & 0\\0.5 & -1\end{bmatrix}"
-    )
-    # The answer to a puzzle is not given away, and a run has no number of its own.
-    assert pdf.as_drawn({"given": [["z", 1.0]], "turns": []}) == pdf.as_drawn({"time": 6.0}) == ""
+    """Readers would read them off the interactive figure."""
     figure = BeautifulSoup(
         '<figure data-figure="simple" data-state=\'{"angle": 1, "axis": "z"}\'></figure>', "lxml"
     )

@@ -216,17 +216,29 @@ def test_a_cylinder_touches_its_ends():
 # Words, colours and strokes.
 
 
-@pytest.mark.parametrize("alt", ["", " " * 60, "A triad.", "x" * 39])
-def test_a_figure_without_words_is_refused(alt):
-    with pytest.raises(ValueError, match=f"alt has only {len(alt.strip())} characters"):
-        Drawing(alt)
-
-
-def test_a_view_of_the_wrong_shape_and_an_empty_text_are_refused():
-    with pytest.raises(ValueError, match=r"view has shape \(2,\)"):
-        Drawing(ALT, view=(1, 2))
-    with pytest.raises(ValueError, match="no visible characters"):
-        Drawing(ALT).label((0, 0, 0), "  ")._repr_html_()
+@pytest.mark.parametrize(
+    "draw, words",
+    [
+        (lambda: Drawing(""), "alt has only 0 characters"),
+        (lambda: Drawing(" " * 60), "alt has only 0 characters"),
+        (lambda: Drawing("A triad."), "alt has only 8 characters"),
+        (lambda: Drawing("x" * 39), "alt has only 39 characters"),
+        (lambda: Drawing(ALT, view=(1, 2)), r"view has shape \(2,\)"),
+        (lambda: Drawing(ALT).label((0, 0, 0), "  ")._repr_html_(), "no visible characters"),
+        (
+            lambda: Animation(
+                lambda progress: Drawing(ALT, looking_down("z")).triad(
+                    "A", simple_dcm("x", progress)
+                ),
+                [("A turns", 1.0)],
+            ),
+            "has different marks from the one at 0",
+        ),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused(draw, words):
+    with pytest.raises(ValueError, match=words):
+        draw()
 
 
 @pytest.mark.parametrize("name", SAMPLES)
@@ -431,14 +443,6 @@ def test_nothing_moves_by_itself():
             if isinstance(shape, str)
         ]
         assert [data for data in last if data in paths] == paths
-
-
-def test_moments_that_do_not_match_are_refused():
-    with pytest.raises(ValueError, match="has different marks from the one at 0"):
-        Animation(
-            lambda progress: Drawing(ALT, looking_down("z")).triad("A", simple_dcm("x", progress)),
-            [("A turns", 1.0)],
-        )
 
 
 def test_what_a_screen_reader_says_follows_the_angle():

@@ -148,13 +148,21 @@ def test_what_is_found_is_said_in_words():
     )
 
 
-def test_no_convention_is_told():
-    fixed = np.eye(3)[[1, 2, 0]]
-    with pytest.raises(ValueError, match="no convention known to this kit"):
-        convention_of(lambda q: fixed, "quaternion")
-    with pytest.raises(ValueError, match="not a rotation"):
-        convention_of(lambda q: 2 * np.eye(3), "quaternion")
-    with pytest.raises(ValueError, match="can take"):
-        convention_of(lambda q: np.eye(3), "spinor")
-    with pytest.raises(ValueError, match="sens is not known"):
-        assert_convention(lambda q: np.eye(3), "quaternion", sens="other")
+@pytest.mark.parametrize(
+    "call, words",
+    [
+        (
+            lambda: convention_of(lambda q: np.eye(3)[[1, 2, 0]], "quaternion"),
+            "no convention known to this kit",
+        ),
+        (lambda: convention_of(lambda q: 2 * np.eye(3), "quaternion"), "not a rotation"),
+        (lambda: convention_of(lambda q: np.eye(3), "spinor"), "can take"),
+        (
+            lambda: assert_convention(lambda q: np.eye(3), "quaternion", sens="other"),
+            "sens is not known",
+        ),
+    ],
+)
+def test_no_convention_is_told(call, words):
+    with pytest.raises(ValueError, match=words):
+        call()
