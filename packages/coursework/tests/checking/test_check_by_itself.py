@@ -152,6 +152,8 @@ def test_each_different_answer_counts_once_and_earns_a_hint(desk):
     assert last.tries == 5
     assert entry_of().answers == tuple(f"wrong {number}-digits" for number in range(1, 6))
     assert entry_of().mistake == "another value" and check(ARM, "right").help == "hint"
+    # A question without hints announces none.
+    assert check(SAW, "wrong").messages == check(SAW, "half").messages == ["Said."]
 
 
 def test_of_many_answers_some_are_remembered(desk, monkeypatch):
@@ -159,11 +161,6 @@ def test_of_many_answers_some_are_remembered(desk, monkeypatch):
     for number in range(5):
         reply = check(ARM, f"wrong {number}")
     assert reply.tries == 3
-
-
-def test_no_hint_is_announced_where_there_is_none(desk):
-    assert check(SAW, "wrong").messages == ["Said."]
-    assert check(SAW, "half").messages == ["Said."]
 
 
 @pytest.mark.parametrize(
