@@ -382,6 +382,7 @@ def test_a_reader_plays_restores_and_changes_the_run(open_figure):
     page.get_by_role("button", name="Play").click()
     page.wait_for_function("document.querySelector('.player input').value > 1")
     page.get_by_role("button", name="Pause").click()
+    page.get_by_role("button", name="Play").wait_for()
     settle(page)
     stopped = time_of(page)
     assert stopped > 1 and all("L" in data for data in curves(page))
