@@ -41,6 +41,15 @@ def test_gaps_and_rows_that_repeat_are_seen():
         assert examine(text, light, judged=False).light(light) == "wrong"
 
 
+@pytest.mark.parametrize("limit, red", [(1, False), (0.8, True)])
+def test_the_peak_of_a_smooth_rotation_is_not_called_clipped(limit, red):
+    time = np.arange(0, 20, 0.01)
+    rate = np.clip(np.sin(time), -limit, limit) / 2
+    rows = [f"{t:.2f},0,0,9.81,{x:.5f},0,0.1" for t, x in zip(time, rate)]
+    verdicts = examine("\n".join(["time,ax,ay,az,gx,gy,gz", *rows]), "simulated").verdicts
+    assert any("clipped" in verdict.words for verdict in verdicts) == red
+
+
 def test_a_quaternion_against_its_headings_is_seen():
     given = simulate(3)
     given["quaternion"] = np.roll(given["quaternion"], -1, axis=1)

@@ -323,11 +323,17 @@ class _Bench:
         raw = self.raw[kind]
         for letter, column in zip("xyz", raw.T):
             for end, where in ((column.max(), "above"), (column.min(), "below")):
-                flat = np.abs(column - end) <= 1e-4 * np.abs(end)
+                away = np.abs(column - end)
+                flat = away <= 1e-4 * np.abs(end)
                 lasting = int((flat[1:] & flat[:-1]).sum())
+                # The peak of a smooth curve is flat too, but it leaves its largest value gradually.
+                first, last = ~flat[:-1] & flat[1:], flat[:-1] & ~flat[1:]
+                beside = np.concatenate([away[:-1][first], away[1:][last]])
+                if not beside.size or np.median(beside) < 1e-3 * np.abs(end):
+                    continue
                 # Values of a coarse instrument repeat as well, but then so do the neighbouring
                 # values.
-                others = np.unique(np.abs(column[~flat] - end), return_counts=True)[1]
+                others = np.unique(away[~flat], return_counts=True)[1]
                 if lasting >= 4 and others.size and flat.sum() > 5 * others[:3].max():
                     return self.say(
                         f"range of the {kind}",
