@@ -198,6 +198,13 @@ def test_the_example_of_a_manual_that_cannot_be_run():
         ("matrix", "1 0 0 0 1 0 0 0 -1", "left-handed"),
         ("matrix", "nothing", "0 numbers"),
         ("body fixed angles", "0,5 0 0", "Write 0.5 for one half: a comma separates two numbers."),
+        *(
+            ("body fixed angles", f"{angle} 0 0", f"This contains '{angle}': work it out")
+            for angle in ("pi/2", "\u03c0/2", "2*pi", "2pi", "sqrt2", "1/2")
+        ),
+        ("body fixed angles", "90\u00b0 0 0", "These are degrees"),
+        ("body fixed angles", "roll=0.1 pitch=0.2 yaw=0.3", "named roll, pitch, yaw. Write them"),
+        ("matrix", str(np.eye(4).tolist()), "only the three columns of its rotation"),
     ],
 )
 def test_what_means_no_orientation_is_refused_in_the_readers_terms(form, text, message):
@@ -205,6 +212,26 @@ def test_what_means_no_orientation_is_refused_in_the_readers_terms(form, text, m
         [{"side": {"program": "this book", "form": form, "sequence": "zyx"}, "text": text}]
     )
     assert message in answer["fault"]
+
+
+@pytest.mark.parametrize("program", ["this book", "SciPy"])
+def test_named_parts_are_read_by_their_names(program):
+    quaternion = {"program": program, "form": "quaternion", "sequence": "zyx"}
+    angles = {"program": program, "form": "body fixed angles", "sequence": "zyx"}
+    texts = [
+        "w=0.8, x=0, y=0, z=0.6",
+        '{"x": 0, "y": 0, "z": 0.6, "w": 0.8}',
+        "x: 0\ny: 0\nz: 0.6\nw: 0.8",
+        "Quaternion(x=0, w=0.8, z=0.6, y=0)",
+    ]
+    jobs = [{"side": quaternion, "text": text} for text in texts]
+    jobs += [{"side": angles, "text": f"yaw={2 * np.arcsin(0.6)}, pitch=0, roll=0"}]
+    about_z = orientation.simple_dcm("z", 2 * np.arcsin(0.6))
+    expected = about_z if program == "this book" else None
+    dcms = [np.array(answer["dcm"]) for answer in converted(jobs)]
+    for dcm in dcms:
+        assert rotation_error(dcm, dcms[0] if expected is None else expected) < 1e-12
+    assert abs(abs(dcms[0][0, 1]) - 0.96) < 1e-12
 
 
 def test_rounded_numbers_are_taken_and_said_to_be():

@@ -16,6 +16,10 @@ const ROUNDED = 0.02, EXACT = 1e-6;
 const NUMBER = /[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?/gi;
 const MINUS = /\u2212\s*|\u2013/g, APART = /(\d\.?[ \t]+|[[(,;|&][ \t]*)-[ \t]+(?=[.\d])/g;   // a sign apart from its number
 
+// What only the workbench works out, names of numbers, and the orders of named angles that everybody means.
+const ARITHMETIC = /\S*(?:π|√|sqrt|[*/^]|(?<![a-z])pi(?![a-z]))\S*/i, TYPE = /dtype\s*=\s*[\w.']+/g;
+const PARTS = /([wxyz])["']?\s*[=:]/gi, NAMED_ANGLES = /roll|pitch|yaw/gi, TAIT_BRYAN = { zyx: 'yaw pitch roll', xyz: 'roll pitch yaw' };
+
 // ---- the meaning of a side ------------------------------------------------------------------------------
 
 // Return a side with the convention of its program instead of what the reader may have chosen.
@@ -33,9 +37,19 @@ export const sequencesOf = (side, programs) => programs[side.program]?.sequences
 
 // Return the orientation that the numbers in a text describe, and what was corrected; throw if they describe none.
 export function read(side, text) {
-  const numbers = (decimalPoints(text).replace(MINUS, '-').replace(APART, (_, before) => `${before}-`).match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
+  let numbers = (decimalPoints(text.replace(TYPE, '')).replace(MINUS, '-').replace(APART, (_, before) => `${before}-`).match(NUMBER) ?? []).map(Number);
+  const wanted = FORMS[side.form], arithmetic = text.match(ARITHMETIC)?.[0];
+  if (arithmetic) throw new Error(`This contains '${arithmetic}': work it out, and write the result.`);
   const commas = numbers.length > wanted && /\d,\d/.test(text) ? ' Write 0.5 for one half: a comma separates two numbers.' : '';
-  if (numbers.length !== wanted) throw new Error(`There ${numbers.length === 1 ? 'is' : 'are'} ${several(numbers.length, 'numbers')} here, but ${side.form} needs ${wanted}.${commas}`);
+  const pose = side.form === 'matrix' && [12, 16].includes(numbers.length) ? ' Of a pose, only the three columns of its rotation belong here.' : '';
+  if (numbers.length !== wanted) throw new Error(`There ${numbers.length === 1 ? 'is' : 'are'} ${several(numbers.length, 'numbers')} here, but ${side.form} needs ${wanted}.${commas}${pose}`);
+  const names = [...text.matchAll(PARTS)].map(([, name]) => name.toLowerCase()), order = side.scalar === 'last' ? 'xyzw' : 'wxyz';
+  if (side.form === 'quaternion' && [...names].sort().join('') === 'wxyz') numbers = [...order].map((part) => numbers[names.indexOf(part)]);
+  const angles = text.toLowerCase().match(NAMED_ANGLES)?.join(' ');
+  if (angles && ANGLES.includes(side.form) && angles !== TAIT_BRYAN[side.sequence]) {
+    throw new Error(`The angles are named ${angles.replaceAll(' ', ', ')}. Write them without names, in the order of the sequence ${[...side.sequence].join('-')}.`);
+  }
+  if (side.unit === 'radians' && side.form !== 'matrix' && side.form !== 'quaternion' && /°|deg/i.test(text)) throw new Error('These are degrees: choose degrees, or write radians.');
   let dcm = null, said = '';
   if (side.form === 'matrix') {
     dcm = [0, 3, 6].map((k) => numbers.slice(k, k + 3));
