@@ -1,9 +1,11 @@
 """Grading a class: every notebook on its own, nothing lost or done twice, the same everywhere."""
 
+import contextlib
 import csv
 import dataclasses
 import hashlib
 import io
+import itertools
 import json
 import multiprocessing
 import os
@@ -464,6 +466,22 @@ def test_a_table_that_somebody_changed_is_kept_and_said(course, copied):
     regrade(copied, solutions=course / "solutions", show=shown)
     (kept,) = copied.glob("undecided-changed-*.csv")
     assert kept.read_text() == "decisions of an evening" and "merge`" in shown.getvalue()
+
+
+@pytest.mark.parametrize("writes", range(4))
+def test_a_killed_run_does_not_take_its_own_table_for_a_persons(tmp_path, monkeypatch, writes):
+    def write_some(*arguments, done=itertools.count()):
+        if next(done) == writes:
+            raise KeyboardInterrupt
+        write(*arguments)
+
+    store = Store(tmp_path)
+    list(store.write_table("grades.csv", ["yesterday"], ""))
+    with monkeypatch.context() as killed, contextlib.suppress(KeyboardInterrupt):
+        killed.setattr("coursework.grading.store.write", write_some)
+        list(store.write_table("grades.csv", ["today"], ""))
+    assert list(store.write_table("grades.csv", ["tomorrow"], "")) == []
+    assert [path.read_text() for path in tmp_path.glob("grades*")] == ["tomorrow"]
 
 
 def test_a_full_disk_is_named(tmp_path):

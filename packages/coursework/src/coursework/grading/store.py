@@ -145,16 +145,18 @@ class Store:
 
         ``advice`` is how the person's changes can become marks.
         """
-        path = self.folder / name
+        path, table = self.folder / name, "".join(rows).encode("utf8", "backslashreplace")
         written = self.said(TABLES, by_name(text)) or {}
-        if path.exists():
-            there = hashlib.sha256(path.read_bytes()).hexdigest()
-            if there != written.get(name, there):
-                kept = path.with_stem(f"{path.stem}-changed-{there[:8]}")
-                os.replace(path, kept)
-                yield f"Somebody had changed {name}, so we kept that table as {kept}. {advice}"
-        write(path, rows)
-        digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        there = hashlib.sha256(path.read_bytes()).hexdigest() if path.exists() else ""
+        if there and there not in written.get(name, there).split():
+            kept = path.with_stem(f"{path.stem}-changed-{there[:8]}")
+            os.replace(path, kept)
+            yield f"Somebody had changed {name}, so we kept that table as {kept}. {advice}"
+            there = ""
+        # Note both before one replaces the other, because we may be killed in between.
+        digest = hashlib.sha256(table).hexdigest()
+        write(self.folder / TABLES, json.dumps({**written, name: f"{digest} {there}"}))
+        write(path, table)
         write(self.folder / TABLES, json.dumps({**written, name: digest}))
 
     def put_aside(self, student: str, assignment: str) -> Path:
