@@ -637,7 +637,8 @@ def _demand_arguments(name: str, given: set[str]) -> None:
         if parameter.kind is parameter.KEYWORD_ONLY
     ]
     for argument in sorted(given - set(known)):
-        close = ["worth"] * (argument == "points") + difflib.get_close_matches(argument, known, 1)
+        # In nbgrader, the points of a question are called so.
+        close = ["worth"] if argument == "points" else difflib.get_close_matches(argument, known, 1)
         raise AuthorError(
             f"{name}: `question` has no argument `{argument}`."
             + (f" Did you mean `{close[0]}`?" if close else "")
