@@ -100,8 +100,11 @@ RULES = {
 }
 
 
-# Bodies in the light: on a light page less of their colour shows there, on a dark one more.
 def _lights(lit, unlit):
+    """Return how much of its colour, in per cent, a body shows in the light and out of it.
+
+    Light makes a body paler on a light page, and more colourful on a dark one.
+    """
     return (
         f"--lit:color-mix(in srgb,currentColor {lit}%,var(--sheet));"
         f"--unlit:color-mix(in srgb,currentColor {unlit}%,var(--sheet));"

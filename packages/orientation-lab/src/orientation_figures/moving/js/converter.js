@@ -16,7 +16,8 @@ const ROUNDED = 0.02, EXACT = 1e-6;
 const NUMBER = /[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?/gi;
 const MINUS = /\u2212\s*|\u2013/g, APART = /(\d\.?[ \t]+|[[(,;|&][ \t]*)-[ \t]+(?=[.\d])/g;   // a sign apart from its number
 
-// What only the workbench works out, names of numbers, and the orders of named angles that everybody means.
+// Arithmetic, which we refuse; the type that NumPy prints; names of a quaternion's parts and of angles; and the two
+// sequences in which such names have one meaning.
 const ARITHMETIC = /\S*(?:π|√|sqrt|[*/^]|(?<![a-z])pi(?![a-z]))\S*/i, TYPE = /dtype\s*=\s*[\w.']+/g;
 const PARTS = /([wxyz])["']?\s*[=:]/gi, NAMED_ANGLES = /roll|pitch|yaw/gi, TAIT_BRYAN = { zyx: 'yaw pitch roll', xyz: 'roll pitch yaw' };
 
